@@ -1,0 +1,31 @@
+// The depth camera without distortion: frames are made ideal when they come in (algo/depth).
+#pragma once
+
+#include "algo/core/calibration.hpp"
+
+namespace st {
+
+struct Pinhole {
+  float fx = 1, fy = 1, cx = 0, cy = 0;
+  int width = 0, height = 0;
+
+  static Pinhole of(const Intrinsics& k) {
+    return {static_cast<float>(k.fx),
+            static_cast<float>(k.fy),
+            static_cast<float>(k.cx),
+            static_cast<float>(k.cy),
+            k.width,
+            k.height};
+  }
+  Vec3f ray(float u, float v) const { return {(u - cx) / fx, (v - cy) / fy, 1.0f}; }
+};
+
+// The camera of an image that is `step` times coarser; its pixel (0, 0) is the mean of the first step x step
+// pixels.
+constexpr Pinhole coarser(const Pinhole& k, int step) {
+  const float s = static_cast<float>(step);
+  return {k.fx / s,       k.fy / s,       (k.cx + 0.5f) / s - 0.5f, (k.cy + 0.5f) / s - 0.5f,
+          k.width / step, k.height / step};
+}
+
+}  // namespace st

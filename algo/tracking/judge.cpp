@@ -1,0 +1,51 @@
+#include "algo/tracking/judge.hpp"
+
+#include <cmath>
+
+namespace st {
+
+Agreement compare(const ModelView& view, const Pinhole& camera, ImageView<const float> depth_z, const Pose& D,
+                  const DepthTermResult& depth) {
+  const PoseF Df = to_float(D);
+  int counts[4] = {0, 0, 0, 0};  // same, through, hidden, unknown
+  Agreement a;
+  constexpr int kStep = 2;  // a quarter of the pixels tells as much
+  const Rect& box = view.maps.roi;
+  for (int v = box.v0; v < box.v1; v += kStep) {
+    for (int u = box.u0; u < box.u1; u += kStep) {
+      const float z = view.z(u, v);
+      if (!(z > 0)) continue;
+      const Vec3f p = Df * (camera.ray(static_cast<float>(u), static_cast<float>(v)) * z);
+      if (!(p.z > 0.1f)) continue;
+      const int pu = static_cast<int>(std::floor(camera.fx * p.x / p.z + camera.cx + 0.5f));
+      const int pv = static_cast<int>(std::floor(camera.fy * p.y / p.z + camera.cy + 0.5f));
+      ++a.model_pixels;
+      if (!depth_z.contains(pu, pv) || !(depth_z(pu, pv) > 0)) {
+        ++counts[3];
+        continue;
+      }
+      const float gap = depth_z(pu, pv) - p.z, reach = 0.02f + 3.0f * depth_sigma_m(p.z);
+      ++counts[gap > reach ? 1 : gap < -reach ? 2 : 0];
+    }
+  }
+  if (a.model_pixels > 0) {
+    const float n = static_cast<float>(a.model_pixels);
+    a.same = static_cast<float>(counts[0]) / n;
+    a.through = static_cast<float>(counts[1]) / n;
+    a.hidden = static_cast<float>(counts[2]) / n;
+    a.unknown = static_cast<float>(counts[3]) / n;
+  }
+  if (depth.tried > 0) a.explained = static_cast<float>(depth.inliers) / static_cast<float>(depth.tried);
+  return a;
+}
+
+Verdict judge(const AlignResult& result, const Agreement& a) {
+  if (!result.solved || a.model_pixels < 20 || result.depth.inliers < 30) return Verdict::kLost;
+  const float seen = a.same + a.through;
+  const float agree = seen > 0 ? a.same / seen : 0.0f;
+  if (a.same + a.through < kLeastInSight || agree < 0.35f) return Verdict::kLost;
+  if (agree < 0.65f || a.explained < 0.35f) return Verdict::kPoor;
+  return Verdict::kGood;
+}
+
+}  // namespace st

@@ -1,0 +1,119 @@
+#include "algo/tracking/motion_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace st {
+
+void MotionFilter::start(const Pose& T_camera_object, const Mat3& R_reference_camera, double t_s) {
+  pose_ = T_camera_object;
+  R_reference_camera_ = R_reference_camera;
+  t_s_ = corrected_t_s_ = t_s;
+  corrected_ = T_camera_object;
+  output_ = MotionOutput{};
+  for (int i = 0; i < 6; ++i) {
+    const bool turn = i >= 3;
+    const double value = turn ? 0.05 : 0.01, rate = turn ? 1.0 : 0.5;
+    axis_[i] = {0, value * value, 0, rate * rate};
+  }
+}
+
+Pose MotionFilter::motion_at(const Vec3& velocity_mps, const Vec3& angular_velocity_rps, double dt_s) const {
+  const Mat3 R_camera_reference = R_reference_camera_.transposed();
+  const Mat3 dR = rotation_from_vector(R_camera_reference * (angular_velocity_rps * dt_s));
+  const Vec3 v = R_camera_reference * (velocity_mps * dt_s);
+  return {dR, pose_.t + v - dR * pose_.t};
+}
+
+Pose MotionFilter::motion_over(double dt_s) const {
+  return motion_at(velocity_mps(), angular_velocity_rps(), dt_s);
+}
+
+Pose MotionFilter::smooth_motion_over(double dt_s) const {
+  return motion_at(output_.velocity_mps, output_.angular_velocity_rps, dt_s);
+}
+
+void MotionFilter::predict(double t_s, const MotionNoise& noise) {
+  const double dt = t_s - t_s_;
+  if (!(dt > 0)) return;
+  pose_ = motion_over(dt) * pose_;
+  pose_.R = orthonormalized(pose_.R);
+  t_s_ = t_s;
+  for (int i = 0; i < 6; ++i) {
+    Axis& a = axis_[i];
+    const double sigma = i < 3 ? noise.acceleration_mps2 : noise.turn_acceleration_rps2;
+    // An acceleration that holds for a frame and then changes (piecewise constant).
+    const double q = sigma * sigma;
+    a.pp += 2 * dt * a.pr + dt * dt * a.rr + 0.25 * dt * dt * dt * dt * q;
+    a.pr += dt * a.rr + 0.5 * dt * dt * dt * q;
+    a.rr += dt * dt * q;
+    const double most = i < 3 ? 4.0 : 25.0;  // (2 m/s)^2, (5 rad/s)^2
+    if (a.rr > most) a.rr = most;
+  }
+}
+
+MotionPrior MotionFilter::prior() const {
+  MotionPrior prior;
+  prior.mean = pose_;
+  // Rotate the diagonal information from the reference axes to the camera's.
+  const Mat3& R = R_reference_camera_;
+  for (int block = 0; block < 2; ++block)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (int k = 0; k < 3; ++k) sum += R(k, r) * R(k, c) / axis_[3 * block + k].pp;
+        prior.information[6 * (3 * block + r) + 3 * block + c] = sum;
+      }
+  return prior;
+}
+
+void MotionFilter::correct(const Pose& T_camera_object, const double (&covariance)[36]) {
+  const Mat3& R = R_reference_camera_;
+  const Vec3 moved = R * (T_camera_object.t - pose_.t);
+  const Vec3 turned = R * rotation_to_vector(T_camera_object.R * pose_.R.transposed());
+  for (int i = 0; i < 6; ++i) {
+    Axis& a = axis_[i];
+    const int block = i / 3, k = i % 3;
+    double posterior = 0;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        posterior += R(k, r) * covariance[6 * (3 * block + r) + 3 * block + c] * R(k, c);
+    if (!(posterior > 0) || posterior > a.pp) posterior = a.pp;
+    const double shift = block == 0 ? moved[k] : turned[k];
+    const double gain = a.pr / a.pp, share = posterior / a.pp;
+    a.rate += gain * shift;
+    a.rr -= gain * a.pr * (1.0 - share);
+    a.pr *= share;
+    a.pp = posterior;
+  }
+  pose_ = T_camera_object;
+  update_output(corrected_, t_s_ - corrected_t_s_);
+  corrected_ = pose_;
+  corrected_t_s_ = t_s_;
+}
+
+void MotionFilter::update_output(const Pose& before, double dt_s) {
+  if (!(dt_s > 0)) return;
+  const Mat3& R = R_reference_camera_;
+  const Vec3 v = R * (pose_.t - before.t) * (1 / dt_s);
+  const Vec3 w = R * rotation_to_vector(pose_.R * before.R.transposed()) * (1 / dt_s);
+  const double share_v = dt_s / (0.067 + dt_s), share_a = dt_s / (0.2 + dt_s);
+  const MotionOutput old = output_;
+  output_.velocity_mps += (v - old.velocity_mps) * share_v;
+  output_.angular_velocity_rps += (w - old.angular_velocity_rps) * share_v;
+  const Vec3 a = (output_.velocity_mps - old.velocity_mps) * (1 / dt_s);
+  const Vec3 alpha = (output_.angular_velocity_rps - old.angular_velocity_rps) * (1 / dt_s);
+  output_.acceleration_mps2 += (a - old.acceleration_mps2) * share_a;
+  output_.turn_acceleration_rps2 += (alpha - old.turn_acceleration_rps2) * share_a;
+}
+
+void MotionFilter::coast(double fade) {
+  for (Axis& a : axis_) a.rate *= fade;
+}
+
+double MotionFilter::position_sigma_m() const {
+  const double largest = std::max(axis_[0].pp, std::max(axis_[1].pp, axis_[2].pp));
+  return std::sqrt(largest);
+}
+
+}  // namespace st

@@ -1,0 +1,74 @@
+// Constant-velocity motion of one object with white acceleration noise: predicts the pose of the next frame
+// and how far to trust it, and learns from the pose that the alignment found. Six independent axes: position
+// of the object's origin and turn, both along the axes of a fixed reference frame (the floor's, where there
+// is one).
+#pragma once
+
+#include "algo/core/pose.hpp"
+#include "algo/tracking/align.hpp"
+
+namespace st {
+
+// One-sigma accelerations of hands, legs and robots.
+struct MotionNoise {
+  double acceleration_mps2 = 2.0;
+  double turn_acceleration_rps2 = 5.0;
+};
+
+// Smoothed rates for publishing, reference axes. First-order low-pass filters: velocity lags by 67 ms,
+// acceleration by 200 ms more at 30 frames a second.
+struct MotionOutput {
+  Vec3 velocity_mps{}, angular_velocity_rps{}, acceleration_mps2{}, turn_acceleration_rps2{};
+};
+
+class MotionFilter {
+ public:
+  // Starts at rest. R_reference_camera: axes in which the filter works.
+  void start(const Pose& T_camera_object, const Mat3& R_reference_camera, double t_s);
+
+  // Moves the estimate on to time t_s.
+  void predict(double t_s, const MotionNoise& noise);
+
+  // The prior for the alignment, from the predicted state.
+  MotionPrior prior() const;
+
+  // Takes the pose found by an alignment that already used prior(): its covariance (camera axes, about the
+  // origin) is the posterior, so the rates follow by conditioning (no second use of the prior).
+  void correct(const Pose& T_camera_object, const double (&covariance)[36]);
+
+  // Keeps the predicted pose and lets the rates fade: an object that nobody sees is not followed for long.
+  void coast(double fade);
+  void rest() { coast(0); }
+
+  const Pose& pose() const { return pose_; }
+  Vec3 velocity_mps() const { return {axis_[0].rate, axis_[1].rate, axis_[2].rate}; }  // reference axes
+  Vec3 angular_velocity_rps() const {
+    return {axis_[3].rate, axis_[4].rate, axis_[5].rate};
+  }  // reference axes
+  double t_s() const { return t_s_; }
+  const MotionOutput& output() const { return output_; }
+  // The object's motion over dt at the present rates, in the camera frame: p(t + dt) = motion * p(t).
+  Pose motion_over(double dt_s) const;
+  // The same at the smoothed rates. A colour frame taken earlier is registered with these: the filter's own
+  // rates learn from that registration, and the two would wind each other up.
+  Pose smooth_motion_over(double dt_s) const;
+  double position_sigma_m() const;
+
+ private:
+  struct Axis {
+    double rate = 0;
+    double pp = 0, pr = 0, rr = 0;  // covariance of (value, rate)
+  };
+  Axis axis_[6];
+  Pose pose_;
+  Mat3 R_reference_camera_;
+  double t_s_ = 0;
+
+  Pose motion_at(const Vec3& velocity_mps, const Vec3& angular_velocity_rps, double dt_s) const;
+  void update_output(const Pose& before, double dt_s);
+  MotionOutput output_;
+  Pose corrected_;  // newest corrected pose and its time, for the published rates
+  double corrected_t_s_ = 0;
+};
+
+}  // namespace st

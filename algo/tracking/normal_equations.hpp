@@ -1,0 +1,41 @@
+// One set of normal equations in which all pose information meets. Unknowns, in this order: the small motion
+// of the object (translation m, rotation rad, camera axes, about the object's pivot) and the shift of the
+// colour image against the depth image (pixels), which absorbs registration error. Minimises sum of w (r + J
+// x)^2, so x = -H^-1 g.
+#pragma once
+
+#include "algo/core/linear.hpp"
+
+namespace st {
+
+struct NormalEquations {
+  static constexpr int kPose = 6;
+  static constexpr int kSize = 8;
+
+  double H[kSize * kSize]{};  // only the upper triangle is kept; mirrored() completes it
+  double g[kSize]{};
+
+  // A residual that depends on the pose alone.
+  void add(const double (&J)[kPose], double r, double w) {
+    for (int i = 0; i < kPose; ++i) {
+      const double wJ = w * J[i];
+      g[i] += wJ * r;
+      for (int j = i; j < kPose; ++j) H[i * kSize + j] += wJ * J[j];
+    }
+  }
+
+  // Sums of a kernel over its first n unknowns: upper triangle of w J J^T row by row, and w J r.
+  void add_sums(const double* triangle, const double* gradient, int n) {
+    for (int i = 0; i < n; ++i) {
+      g[i] += gradient[i];
+      for (int j = i; j < n; ++j) H[i * kSize + j] += *triangle++;
+    }
+  }
+
+  void mirror() {
+    for (int i = 0; i < kSize; ++i)
+      for (int j = 0; j < i; ++j) H[i * kSize + j] = H[j * kSize + i];
+  }
+};
+
+}  // namespace st

@@ -1,0 +1,91 @@
+// One object being tracked: its model, its motion, and how sure we are of it.
+#pragma once
+
+#include "algo/core/records.hpp"
+#include "algo/tracking/align.hpp"
+#include "algo/tracking/judge.hpp"
+#include "algo/tracking/model_view.hpp"
+#include "algo/tracking/motion_filter.hpp"
+#include "algo/volume/volume.hpp"
+
+namespace st {
+
+// The floor, or what stands in for it, in the camera frame: decides how object frames lie.
+struct Support {
+  bool found = false;     // false: up is gravity's, or the camera's own
+  Vec3 up{0, -1, 0};      // unit, camera frame
+  double d = 0;           // up . p + d = 0 on the floor; 0 when not found
+  Mat3 R_camera_floor{};  // columns: x (the camera's axis laid on the floor), y, z = up
+
+  double height_of(const Vec3& p) const { return dot(up, p) + d; }
+};
+Support make_support(const Vec3& up, double d, bool found);
+
+// Box in the object's frame around what has been seen of it.
+struct Bounds {
+  Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+
+  bool empty() const { return low.x > high.x; }
+  void include(const Vec3& p) {
+    for (int i = 0; i < 3; ++i) {
+      if (p[i] < low[i]) low[i] = p[i];
+      if (p[i] > high[i]) high[i] = p[i];
+    }
+  }
+  Vec3 centre() const { return (low + high) * 0.5; }
+  Vec3 size() const { return high - low; }
+};
+
+// From which sides an object has been seen, as seen from itself: 10 degrees of azimuth, 30 of elevation. A
+// side that was fused often enough is left alone: fusing for ever would let the model follow every small
+// error of its own tracking.
+struct SeenSides {
+  static constexpr int kAzimuths = 36, kElevations = 6;
+  std::uint8_t fused[kAzimuths * kElevations]{};
+
+  std::uint8_t& side_of(const Pose& T_camera_object);
+};
+
+struct Track {
+  // Candidate: has a model, not yet three good poses. Lost: keeps model and number, waits to be found again.
+  enum class Phase : std::uint8_t { kFree, kCandidate, kTracked, kLost };
+
+  Phase phase = Phase::kFree;
+  int id = 0;              // 0 until confirmed
+  bool left_view = false;  // went out through the edge of the image
+  bool from_background = false;
+  Volume volume;
+  Bounds bounds;
+  MotionFilter motion;
+  Pose T_camera_object;  // newest estimate, whatever its state
+  TrackState state = TrackState::kLost;
+
+  Vec3 birth_position{};  // camera frame, of the object's origin
+  bool has_moved = false;
+  int good_poses = 0;  // since birth
+  int poor_run = 0;    // frames in a row without a good pose
+  SeenSides sides;
+  int integrated = 0;      // frames fused into the model
+  bool told_full = false;  // that its volume is too small
+  int still_run = 0;       // frames in a row without motion
+  int published_gap = 0;   // predicted rows in a row
+  double last_good_t_s = 0;
+  double yaw_unwrapped = 0;  // as published, floor frame
+  double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
+
+  bool planar = true;     // rests on the floor: floor prior applies
+  int off_floor_run = 0;  // good frames in a row that contradict it
+
+  ModelView rendered;  // memory for the model's view
+  ModelView view;  // what this frame is aligned with: rendered, or in frame-to-frame mode the frame before
+  int view_pixels = 0;  // with a surface
+  std::size_t points_used = 0;
+  AlignResult aligned;
+  Agreement agreement;
+  Verdict verdict = Verdict::kLost;
+  YawSource yaw_source = YawSource::kNone;
+
+  bool active() const { return phase == Phase::kCandidate || phase == Phase::kTracked; }
+};
+
+}  // namespace st

@@ -1,0 +1,24 @@
+// The objects' models as meshes, after the loop: memory from the heap, kept until the files are written.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "algo/volume/mesh.hpp"
+
+namespace st {
+
+class ModelMeshes {
+ public:
+  // The view holds as long as this object. Pieces of fewer than 50 triangles are noise and left out.
+  MeshView extract(const Volume& volume);
+
+ private:
+  struct Mesh {
+    std::vector<MeshVertex> vertices;
+    std::vector<std::uint32_t> indices;
+  };
+  std::deque<Mesh> meshes_;
+};
+
+}  // namespace st

@@ -1,0 +1,85 @@
+// What goes out: a row per confirmed object and frame.
+#include <cmath>
+
+#include "algo/core/scalar_math.hpp"
+#include "firmware_like/object_tracker.hpp"
+
+namespace st {
+namespace {
+
+constexpr int kLongestGap = 6;  // frames for which a predicted pose is published
+
+// Covariance of the pose in the floor's axes: position sigma, and sigma about those axes.
+void floor_sigmas(const double (&covariance)[36], const Mat3& R_floor_camera, Vec3& position, Vec3& turn) {
+  for (int i = 0; i < 3; ++i) {
+    double p = 0, w = 0;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        p += R_floor_camera(i, r) * covariance[6 * r + c] * R_floor_camera(i, c);
+        w += R_floor_camera(i, r) * covariance[6 * (3 + r) + 3 + c] * R_floor_camera(i, c);
+      }
+    position[i] = p > 0 ? std::sqrt(p) : 0;
+    turn[i] = w > 0 ? std::sqrt(w) : 0;
+  }
+}
+
+}  // namespace
+
+ObjectSample ObjectTracker::sample_of(Track& track) const {
+  ObjectSample s;
+  s.id = track.id;
+  s.in_view = !track.left_view;
+  const bool tracked = track.phase == Track::Phase::kTracked;
+  if (tracked && track.state == TrackState::kGood) {
+    s.state = TrackState::kGood;
+    track.published_gap = 0;
+  } else if (tracked && track.published_gap < kLongestGap && track.poor_run <= kLongestGap) {
+    s.state = TrackState::kPredicted;
+    ++track.published_gap;
+  } else {
+    s.state = tracked && track.state == TrackState::kPoor ? TrackState::kPoor : TrackState::kLost;
+    return s;
+  }
+  s.in_tum = true;
+  s.T_camera_object = track.T_camera_object;
+  s.T_floor_object = T_floor_camera_ * track.T_camera_object;
+  int k = 0;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) s.covariance[k++] = track.covariance[6 * i + j];
+  floor_sigmas(track.covariance, T_floor_camera_.R, s.sigma_position_m, s.sigma_rpy_rad);
+  const double yaw = to_roll_pitch_yaw(s.T_floor_object.R).z;
+  track.yaw_unwrapped += wrap_angle(yaw - track.yaw_unwrapped);
+  s.yaw_unwrapped = track.yaw_unwrapped;
+  const MotionOutput& motion = track.motion.output();
+  s.velocity_mps = motion.velocity_mps;
+  s.angular_velocity_rps = motion.angular_velocity_rps;
+  s.acceleration_mps2 = motion.acceleration_mps2;
+  s.v_mps = std::sqrt(motion.velocity_mps.x * motion.velocity_mps.x +
+                      motion.velocity_mps.y * motion.velocity_mps.y);
+  s.w_rps = motion.angular_velocity_rps.z;
+  s.alpha_rps2 = motion.turn_acceleration_rps2.z;
+  s.yaw_source = track.state == TrackState::kGood ? track.yaw_source : YawSource::kNone;
+  s.inliers = track.agreement.explained;
+  s.residual_m = static_cast<float>(track.aligned.depth.rms_m);
+  return s;
+}
+
+void ObjectTracker::publish(FrameReport& report) {
+  report.objects.clear();
+  for (Track& track : tracks_) {
+    if (track.id == 0 || track.phase == Track::Phase::kFree) continue;
+    const ObjectSample sample = sample_of(track);
+    report.objects.push_back(sample);
+    if (static_cast<std::size_t>(track.id) > counts_.size())
+      counts_.push_back({track.id, report.t_s, report.t_s, 0, 0});
+    if (static_cast<std::size_t>(track.id) > counts_.size()) continue;  // more objects than the list holds
+    ObjectCount& count = counts_[static_cast<std::size_t>(track.id - 1)];
+    if (sample.in_tum) count.last_t_s = report.t_s, ++count.tracked;
+    if (!sample.in_tum && sample.in_view) ++count.lost;
+    count.good_at_end = sample.state == TrackState::kGood;
+    count.left_view = !sample.in_view;
+  }
+  for (const Event& event : events_) report.events.push_back(event);
+}
+
+}  // namespace st

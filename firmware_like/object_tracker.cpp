@@ -1,0 +1,296 @@
+#include "firmware_like/object_tracker.hpp"
+
+#include <cmath>
+#include <span>
+
+#include "algo/depth/preprocess.hpp"
+#include "algo/tracking/image_box.hpp"
+
+namespace st {
+namespace {
+
+constexpr int kViewMargin_px = 14;
+constexpr int kFramesPerSide = 20, kFirstFrames = 10;
+
+}  // namespace
+
+ObjectTracker::ObjectTracker(const Calibration& calibration, const LoopConfig& config)
+    : parts_{{this, &ObjectTracker::bind_images},  {this, &ObjectTracker::bind_segmenter},
+             {this, &ObjectTracker::bind_volumes}, {this, &ObjectTracker::bind_views},
+             {this, &ObjectTracker::bind_points},  {this, &ObjectTracker::bind_integration}},
+      calibration_(calibration),
+      config_(config) {
+  frame_.camera = Pinhole::of(calibration.depth);
+}
+
+void ObjectTracker::plan_memory(MemoryPlan& plan) {
+  plan.add("images of the frame", "firmware_like", parts_[0]);
+  plan.add("background and segments", "algo/segmentation", parts_[1]);
+  plan.add("models, one volume an object", "algo/volume", parts_[2]);
+  plan.add("views of the models", "algo/tracking", parts_[3]);
+  plan.add("observed points", "algo/tracking", parts_[4]);
+  plan.add("work memory of the fusion", "algo/volume", parts_[5]);
+}
+
+void ObjectTracker::bind_images(Bump& memory) {
+  const int width = calibration_.depth.width, height = calibration_.depth.height;
+  const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  frame_.bind(memory, width, height);
+  rest_z_ = {memory.take<float>(n).data(), width, height};
+  registered_color_ = {memory.take<std::uint32_t>(n).data(), width, height};
+}
+
+void ObjectTracker::bind_segmenter(Bump& memory) { segmenter_.bind(memory, calibration_); }
+
+void ObjectTracker::bind_volumes(Bump& memory) {
+  for (Track& track : tracks_) track.volume.bind(memory, config_.volume_side);
+}
+
+void ObjectTracker::bind_views(Bump& memory) {
+  const int width = calibration_.depth.width, height = calibration_.depth.height;
+  for (Track& track : tracks_) track.rendered.maps.bind(memory, width, height);
+  raycast_scratch_.bind(memory, width, height);
+  scratch_.bind(memory, width, height);
+  if (config_.tracker != TrackerKind::kFrameToFrame) return;
+  for (FrameViewMemory& previous : previous_) previous.bind(memory, width, height);
+}
+
+void ObjectTracker::bind_points(Bump& memory) {
+  points_ = memory.take<ObservedPoint>(kMaxPoints * kMaxObjects);
+}
+
+void ObjectTracker::bind_integration(Bump& memory) {
+  integrate_scratch_.bind(memory, calibration_.depth.width, calibration_.depth.height, config_.volume_side);
+}
+
+void ObjectTracker::start() {
+  segmenter_.configure(calibration_);
+  registration_.configure(calibration_);
+  support_ = make_support({0, -1, 0}, 0, false);
+}
+
+std::span<ObservedPoint> ObjectTracker::points_of(std::size_t k) {
+  return points_.subspan(k * kMaxPoints, kMaxPoints);
+}
+
+void ObjectTracker::segment(const FrameInput& input, FrameReport& report) {
+  events_.clear();
+  frame_.input = &input;
+  frame_.color = {input.color};
+  frame_.has_color = calibration_.has_color && !input.color.empty();
+  frame_.color_lag_s = input.color_device_t_s - input.device_t_s;
+  segmentation_ = &segmenter_.process(input, frame_.owners);
+  report.invalid_pixels = segmentation_->depth.invalid_pixels;
+  to_metres(segmenter_.tables(), segmentation_->depth.code, frame_.depth_z);
+  update_support();
+}
+
+// The floor is learned again and again until the first object is confirmed; then it holds still, because
+// every frame that was published stands on it.
+void ObjectTracker::update_support() {
+  if (support_frozen_) return;
+  const Floor& floor = segmentation_->floor;
+  if (floor.found) {
+    support_ = make_support(floor.n, floor.d, true);
+  } else if (frame_.input->has_gravity) {
+    support_ = make_support(frame_.input->gravity_mps2, 0, false);
+  }
+}
+
+void ObjectTracker::predict() {
+  for (Track& track : tracks_)
+    if (track.active()) track.motion.predict(frame_.input->device_t_s, MotionNoise{});
+}
+
+void ObjectTracker::render_one(Track& track, const Pose& T) {
+  track.rendered.T_camera_object = T;
+  const Rect box = visible_rect(track.volume, frame_.camera, T);
+  track.view_pixels = raycast(track.volume, frame_.camera, box.grown(kViewMargin_px), T, raycast_scratch_,
+                              track.rendered.maps)
+                          .hits;
+  track.view = track.rendered;
+}
+
+void ObjectTracker::render() {
+  for (std::size_t k = 0; k < kMaxObjects; ++k) {
+    Track& track = tracks_[k];
+    if (!track.active()) continue;
+    if (config_.tracker == TrackerKind::kFrameToFrame && previous_[k].surface_pixels > 0) {
+      track.view = previous_[k].view;
+      track.view_pixels = previous_[k].surface_pixels;
+    } else {
+      render_one(track, track.motion.pose());
+    }
+  }
+}
+
+void ObjectTracker::associate_pixels() {
+  const AssociationInput input{segmentation_->labels,
+                               {segmentation_->segments.begin(), segmentation_->segments.size()},
+                               frame_.depth_z,
+                               frame_.camera};
+  associate(input, tracks_, frame_.owners, owned_, unexplained_);
+}
+
+AlignInput ObjectTracker::alignment_of(const Track& track, std::size_t k) const {
+  AlignInput in;
+  in.points = points_.subspan(k * kMaxPoints, track.points_used);
+  in.view = track.view;
+  in.depth_z = frame_.depth_z;
+  in.camera = frame_.camera;
+  in.prior = track.motion.prior();
+  in.start = in.prior.mean;
+  in.pivot = in.prior.mean.t;
+  in.floor.on = track.planar && support_.found && config_.use_floor;
+  in.floor.up_camera = support_.up;
+  in.floor.d = support_.d;
+  in.terms = {config_.use_contour, config_.use_color && frame_.has_color, config_.use_floor,
+              config_.use_motion};
+  const double sigma = 2.0 * track.motion.position_sigma_m();
+  in.largest_start_error_m = sigma < 0.02 ? 0.02 : sigma > 0.08 ? 0.08 : sigma;
+  return in;
+}
+
+void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& step) {
+  observe(track, k, owned_[k], step.color_term);
+  track.aligned = AlignResult{};
+  if (track.points_used < 40 || track.view_pixels < 40) return;
+  AlignInput in = alignment_of(track, k);
+  in.terms.color = in.terms.color && step.color_term;
+  in.point_stride = step.point_stride;
+  track.aligned = align(in, scratch_);
+}
+
+// Collects the track's pixels and gives them their colours, as they were when the depth was taken.
+void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box, bool with_color) {
+  const std::uint8_t owner = static_cast<std::uint8_t>(k + 1);
+  if (frame_.has_color && with_color)
+    register_color(registration_, frame_.color, to_float(track.motion.smooth_motion_over(frame_.color_lag_s)),
+                   frame_.depth_z, frame_.owners, owner, box, frame_.camera, registered_color_);
+  mark_edges(frame_.depth_z, owner, box, frame_.owners);
+  track.points_used = gather_points(
+      frame_.depth_z, frame_.owners, owner, box, frame_.camera,
+      frame_.has_color && with_color ? registered_color_ : ImageView<std::uint32_t>{}, points_of(k));
+}
+
+// The frame goes into the model at the pose just found.
+void ObjectTracker::fuse(Track& track, std::size_t k) {
+  Rect box = image_box(track.bounds, track.T_camera_object, frame_.camera, kViewMargin_px);
+  for (const ObservedPoint& point : points_of(k).first(track.points_used)) box.include(point.u, point.v);
+  EvidenceInput evidence;
+  evidence.camera = frame_.camera;
+  evidence.roi = box.clipped(frame_.depth_z.width, frame_.depth_z.height);
+  evidence.depth_m = frame_.depth_z;
+  evidence.owners = frame_.owners;
+  evidence.object = static_cast<std::uint8_t>(k + 1);
+  if (frame_.has_color) evidence.color = registered_color_;
+  note_integrated(track, integrate(track.volume, evidence, track.T_camera_object, IntegrateOptions{},
+                                   integrate_scratch_));
+}
+
+// The averaged view of a thing at rest, before anything touched it; rest_z_ holds it, alone.
+void ObjectTracker::fuse_at_rest(Track& track, const Rect& box) {
+  EvidenceInput evidence;
+  evidence.camera = frame_.camera;
+  evidence.roi = box;
+  evidence.depth_m = rest_z_;
+  note_integrated(track, integrate(track.volume, evidence, track.T_camera_object, IntegrateOptions{},
+                                   integrate_scratch_));
+}
+
+void ObjectTracker::note_integrated(Track& track, const IntegrateStats& stats) {
+  ++track.integrated;
+  if (stats.low.x <= stats.high.x) {
+    track.bounds.include(to_double(stats.low));
+    track.bounds.include(to_double(stats.high));
+  }
+  if (stats.outside_pixels * 50 < stats.surface_pixels) return;
+  // More than two percent fell outside of the box: it was placed by what was seen first. Move it, if that
+  // helps.
+  const BrickShift shift = shift_towards(track.volume, to_float(track.bounds.centre()));
+  if (shift.x != 0 || shift.y != 0 || shift.z != 0) {
+    recentre(track.volume, shift);
+  } else if (!track.told_full) {
+    track.told_full = true;
+    log(EventKind::kVolumeFull, track.id, stats.outside_pixels);
+  }
+}
+
+void ObjectTracker::align_all(const LadderStep& step) {
+  for (std::size_t k = 0; k < kMaxObjects; ++k)
+    if (tracks_[k].active()) align_one(tracks_[k], k, step);
+}
+
+// A thing that rests on the floor stays in its plane until frame after frame says otherwise; then it has six
+// degrees of freedom, until it has rested again for a second.
+void ObjectTracker::mark_planar(Track& track) {
+  if (!support_.found) return;
+  const Pose& T = track.aligned.T_camera_object;
+  const double height = std::fabs(support_.height_of(T.t));
+  const double lean = norm(T.R.col(2) - support_.up);
+  const bool off = height > 0.012 || lean > 0.03;
+  constexpr int kLeaves = 4, kRests = 30;
+  if (track.planar) {
+    track.off_floor_run = off ? track.off_floor_run + 1 : 0;
+    if (track.off_floor_run >= kLeaves) track.planar = false, track.off_floor_run = 0;
+  } else {
+    track.off_floor_run = off ? 0 : track.off_floor_run + 1;
+    if (track.off_floor_run >= kRests) track.planar = true, track.off_floor_run = 0;
+  }
+}
+
+void ObjectTracker::judge_one(Track& track) {
+  const Pose D = track.aligned.T_camera_object * track.view.T_camera_object.inverse();
+  track.agreement = compare(track.view, frame_.camera, frame_.depth_z, D, track.aligned.depth);
+  track.verdict = judge(track.aligned, track.agreement);
+  if (track.verdict != Verdict::kGood) {
+    track.state = track.verdict == Verdict::kPoor ? TrackState::kPoor : TrackState::kLost;
+    ++track.poor_run;
+    track.motion.coast(0.8);
+    track.T_camera_object = track.motion.pose();
+    return;
+  }
+  mark_planar(track);
+  track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
+  track.T_camera_object = track.aligned.T_camera_object;
+  for (int i = 0; i < 36; ++i) track.covariance[i] = track.aligned.covariance[i];
+  track.state = TrackState::kGood;
+  track.poor_run = 0;
+  ++track.good_poses;
+  track.last_good_t_s = frame_.input->t_s;
+  if (norm(track.T_camera_object.t - track.birth_position) > 0.008) track.has_moved = true;
+  const double yaw_all = turn_sigma_rad(track.aligned.data_information, support_.up);
+  const double yaw_shape = turn_sigma_rad(track.aligned.shape_information, support_.up);
+  constexpr double kSeen_rad = 0.035;  // 2 degrees, one sigma
+  track.yaw_source = yaw_all > kSeen_rad                                          ? YawSource::kNone
+                     : track.aligned.color.used > 50 && yaw_all < 0.7 * yaw_shape ? YawSource::kColor
+                                                                                  : YawSource::kDepth;
+}
+
+void ObjectTracker::judge_all() {
+  for (Track& track : tracks_)
+    if (track.active()) judge_one(track);
+}
+
+void ObjectTracker::integrate_all(const LadderStep& step) {
+  for (std::size_t k = 0; k < kMaxObjects; ++k) {
+    Track& track = tracks_[k];
+    if (!track.active() || track.state != TrackState::kGood || !step.integrate) continue;
+    // While the turn is unseen, a new view would smear over the model for ever. The first frames have nothing
+    // to smear.
+    if (track.yaw_source == YawSource::kNone && track.integrated > 30) continue;
+    std::uint8_t& fused = track.sides.side_of(track.T_camera_object);
+    if (fused < kFramesPerSide || track.integrated < kFirstFrames) {
+      fuse(track, k);
+      fused = static_cast<std::uint8_t>(fused + (fused < 255));
+    }
+    if (config_.tracker == TrackerKind::kFrameToFrame && ++previous_[k].age > config_.keyframe_every) {
+      const Rect box = image_box(track.bounds, track.T_camera_object, frame_.camera, kViewMargin_px);
+      remember_frame(previous_[k], frame_.depth_z, frame_.owners, static_cast<std::uint8_t>(k + 1), box,
+                     frame_.camera, frame_.has_color ? registered_color_ : ImageView<std::uint32_t>{},
+                     track.T_camera_object);
+    }
+  }
+}
+
+}  // namespace st

@@ -1,0 +1,136 @@
+// Object mode: everything between a depth frame and the poses of what moves in it. Each public function is
+// one stage of the loop; they run in the order in which they stand here. All memory is bound once.
+#pragma once
+
+#include "algo/core/bump.hpp"
+#include "algo/segmentation/segmenter.hpp"
+#include "algo/tracking/associate.hpp"
+#include "algo/tracking/frame_view.hpp"
+#include "algo/tracking/recover.hpp"
+#include "algo/tracking/track.hpp"
+#include "algo/volume/integrate.hpp"
+#include "firmware_like/config.hpp"
+#include "firmware_like/degradation.hpp"
+#include "firmware_like/frame.hpp"
+#include "firmware_like/memory_plan.hpp"
+
+namespace st {
+
+// What a run's summary says of one confirmed object; outlives its track.
+struct ObjectCount {
+  int id = 0;
+  double first_t_s = 0, last_t_s = 0;  // first and last published pose
+  std::uint64_t tracked = 0, lost = 0;
+  bool good_at_end = false, left_view = false;
+};
+using ObjectCounts = FixedVector<ObjectCount, 64>;
+
+class ObjectTracker {
+ public:
+  static constexpr std::size_t kMaxPoints = 12288;  // observed points of one object
+
+  ObjectTracker(const Calibration& calibration, const LoopConfig& config);
+  ObjectTracker(const ObjectTracker&) = delete;  // the memory plan holds its address
+  ObjectTracker& operator=(const ObjectTracker&) = delete;
+
+  // Enters everything that needs memory into the plan; once the plan is sealed, start() makes it ready for
+  // frames.
+  void plan_memory(MemoryPlan& plan);
+  void start();
+
+  void segment(const FrameInput& input, FrameReport& report);
+  void predict();
+  void render();
+  void associate_pixels();
+  void align_all(const LadderStep& step);
+  void judge_all();
+  void integrate_all(const LadderStep& step);
+  void decide_lives();  // confirm, lose, find again, begin, evict
+  void publish(FrameReport& report);
+
+  // For the end of a run.
+  std::span<const Track> tracks() const { return tracks_; }
+  const ObjectCounts& counts() const { return counts_; }
+  bool has_floor_frame() const { return has_floor_frame_; }
+  const Pose& T_floor_camera() const { return T_floor_camera_; }
+  bool floor_found() const { return support_.found; }
+  int confirmed_count() const { return next_id_ - 1; }
+
+ private:
+  // One row of the memory plan: which member function takes that memory.
+  struct Part {
+    ObjectTracker* tracker;
+    void (ObjectTracker::*take)(Bump&);
+    void bind(Bump& memory) { (tracker->*take)(memory); }
+  };
+  void bind_images(Bump& memory);
+  void bind_segmenter(Bump& memory);
+  void bind_volumes(Bump& memory);
+  void bind_views(Bump& memory);
+  void bind_points(Bump& memory);
+  void bind_integration(Bump& memory);
+
+  void update_support();
+  void align_one(Track& track, std::size_t k, const LadderStep& step);
+  void judge_one(Track& track);
+  void mark_planar(Track& track);
+  AlignInput alignment_of(const Track& track, std::size_t k) const;
+  std::span<ObservedPoint> points_of(std::size_t k);
+  void render_one(Track& track, const Pose& T);
+  void observe(Track& track, std::size_t k, const Rect& box, bool with_color);
+  void fuse(Track& track, std::size_t k);
+  void note_integrated(Track& track, const IntegrateStats& stats);
+  void fuse_at_rest(Track& track, const Rect& box);
+
+  void confirm(Track& track);
+  void lose(Track& track);
+  void start_search();
+  void search_step();
+  void finish_search(const Unexplained& candidate, const Footprint& footprint);
+  double try_yaw(Track& track, std::size_t k, const Footprint& footprint, double yaw_rad);
+  void begin_released();
+  void begin_tracks();
+  std::size_t free_slot();
+  void begin_from_pixels(const Unexplained& what);
+  void claim_pixels(const Unexplained& what, std::size_t k);
+  void log(EventKind kind, int object, double a = 0, double b = 0);
+  ObjectSample sample_of(Track& track) const;
+  void freeze_background();
+
+  Part parts_[6];
+  Calibration calibration_;
+  LoopConfig config_;
+  Frame frame_;
+  Segmenter segmenter_;
+  const Segmentation* segmentation_ = nullptr;
+  ColorRegistration registration_;
+  Support support_;
+  bool support_frozen_ = false;
+  bool has_floor_frame_ = false;
+  Pose T_floor_camera_;
+  int next_id_ = 1;
+
+  Track tracks_[kMaxObjects];
+  Rect owned_[kMaxObjects];  // box of each track's pixels in this frame
+  std::span<ObservedPoint> points_;
+  RaycastScratch raycast_scratch_;
+  AlignScratch scratch_;
+  FrameViewMemory previous_[kMaxObjects];  // frame-to-frame mode: the view of the frame before
+  ImageView<float> rest_z_;
+  ImageView<std::uint32_t> registered_color_;  // of the objects' pixels, pack_rgb
+  IntegrateScratch integrate_scratch_;
+  UnexplainedList unexplained_;
+  Search search_;
+  struct Newcomer {  // an unexplained segment that was there in the frame before, too
+    Rect box;
+    int frames = 0;
+    std::uint8_t refused_by = 0;  // bit k: tracks[k] was looked for in it and is not it
+    bool seen = false;
+  };
+  Newcomer* newcomer_at(const Rect& box);
+  FixedVector<Newcomer, 8> newcomers_;
+  FixedVector<Event, 16> events_;
+  ObjectCounts counts_;
+};
+
+}  // namespace st

@@ -1,0 +1,33 @@
+#include "firmware_like/path_driver.hpp"
+
+namespace st {
+namespace {
+
+constexpr double kFrame_s = 1.0 / 30.0;
+// After a longer stall than the guard's patience the robot stood, and the path's time with it.
+constexpr double kLongestStep_s = 0.25;
+
+}  // namespace
+
+PathDriver::PathDriver(DriveBase& robot, const Path& path)
+    : robot_(robot), follower_(path, robot.geometry().wheel_base_m) {}
+
+void PathDriver::decide(double now_s) {
+  odometry_.clear();
+  robot_.poll(odometry_, status_);
+  if (first_s_ < 0) first_s_ = last_s_ = now_s;
+  const double passed_s = now_s - last_s_ < kLongestStep_s ? now_s - last_s_ : kLongestStep_s;
+  last_s_ = now_s;
+  speeds_ = {};
+  if (status_.fault != RobotFault::kNone || now_s - first_s_ < kStillBefore_s) return;
+  if (!follower_.done())
+    speeds_ = follower_.step(passed_s, kFrame_s);
+  else if (done_s_ < 0)
+    done_s_ = now_s;
+}
+
+void PathDriver::send() { robot_.drive(speeds_.left_mps, speeds_.right_mps); }
+
+bool PathDriver::finished(double now_s) const { return done_s_ >= 0 && now_s - done_s_ > kStillAfter_s; }
+
+}  // namespace st

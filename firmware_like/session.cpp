@@ -1,0 +1,216 @@
+#include "firmware_like/session.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include "algo/core/simd.hpp"
+#include "firmware_like/finish_run.hpp"
+#include "firmware_like/loop.hpp"
+#include "firmware_like/memory_plan.hpp"
+#include "firmware_like/model_meshes.hpp"
+#include "firmware_like/path_file.hpp"
+#include "firmware_like/sealed_section.hpp"
+#include "hal/results/run_folder.hpp"
+#include "hal/system/arena.hpp"
+#include "hal/system/prefault.hpp"
+#include "hal/system/realtime.hpp"
+#include "hal/system/rusage.hpp"
+#include "hal/system/stop_signal.hpp"
+
+namespace st {
+namespace {
+
+// A refused step is a warning with what to do; one that went well needs no line.
+void warn(const SetupStep& step) {
+  if (!step.ok) std::fprintf(stderr, "startrack: warning: %s\n", step.text().c_str());
+}
+
+void choose_simd(const std::string& name) {
+  switch (select_simd(name.empty() ? nullptr : name.c_str())) {
+    case SimdChoice::kDone:
+      return;
+    case SimdChoice::kUnknownName:
+      throw Failure(ExitCode::kBadInput,
+                    "--simd " + name + ": no such instruction set; there are SSSE3, SSE4, AVX2, AVX3");
+    case SimdChoice::kNotOnThisCpu:
+      throw Failure(ExitCode::kBadInput,
+                    "--simd " + name + ": this CPU does not have it; leave --simd out for its best");
+  }
+}
+
+// Frame count and speed, while somebody looks.
+class ProgressLine final : public TelemetrySink {
+ public:
+  explicit ProgressLine(std::uint64_t expected) : expected_(expected) {}
+  void take(const FrameReport& report) override {
+    ++frames_;
+    tracked_ = 0;
+    for (const ObjectSample& object : report.objects) tracked_ += object.in_tum ? 1 : 0;
+  }
+  void flush() override {
+    if (expected_ > 0)
+      std::fprintf(stderr, "\rframe %llu of %llu, %d object(s) tracked ",
+                   static_cast<unsigned long long>(frames_), static_cast<unsigned long long>(expected_),
+                   tracked_);
+    else
+      std::fprintf(stderr, "\rframe %llu, %d object(s) tracked ", static_cast<unsigned long long>(frames_),
+                   tracked_);
+  }
+  ~ProgressLine() override {
+    if (frames_ > 0) std::fputc('\n', stderr);
+  }
+
+ private:
+  std::uint64_t expected_, frames_ = 0;
+  int tracked_ = 0;
+};
+
+std::vector<PathSample> sampled(const Path& path) {
+  std::vector<PathSample> samples;
+  constexpr double kStep_s = 1.0 / 30.0;
+  for (double t = 0; t < path.duration_s(); t += kStep_s) samples.push_back(sample(path, t));
+  samples.push_back(sample(path, path.duration_s()));
+  return samples;
+}
+
+Ending ending_of(LoopEnd why) {
+  switch (why) {
+    case LoopEnd::kSignal:
+      return Ending::kInterrupted;
+    case LoopEnd::kSourceFault:
+    case LoopEnd::kRobotFault:
+      return Ending::kFault;
+    case LoopEnd::kResultsFailed:
+      return Ending::kDiskFull;
+    default:
+      return Ending::kDone;
+  }
+}
+
+// 1 when an object was confirmed and at the end none is good and none has left through the edge, or a live
+// run missed more than 0.1 % of its deadlines.
+ExitCode exit_code_of(const RunEnd& end) {
+  if (end.ending == Ending::kInterrupted) return ExitCode::kInterrupted;
+  if (end.ending == Ending::kFault) return ExitCode::kDeviceFault;
+  bool well = end.objects.empty();
+  for (const ObjectEnd& object : end.objects) well = well || object.good_at_end || object.left_view;
+  if (!well) return ExitCode::kTrackFailed;
+  if (end.info.live && end.deadline_misses * 1000 > end.frames) return ExitCode::kTrackFailed;
+  return ExitCode::kDone;
+}
+
+// Runs the loop on a thread of its own: its name, priority and heap guard are the thread's.
+LoopEnd run_loop(Loop& loop, bool live, RunEnd& end) {
+  LoopEnd why = LoopEnd::kSourceEnded;
+  SetupStep priority;
+  std::thread compute([&] {
+    if (live) priority = use_realtime_priority(kLoopPriority);
+    flush_denormals();
+    SealedSection sealed;
+    why = loop.run();
+    sealed.end();
+    end.heap_calls_after_seal = sealed.heap_calls();
+    end.page_faults_after_seal = static_cast<std::uint64_t>(sealed.usage().faults());
+  });
+  compute.join();
+  warn(priority);
+  return why;
+}
+
+}  // namespace
+
+SessionResult run_session(const SessionOptions& options) {
+  watch_stop_signals();
+  choose_simd(options.simd);
+  std::optional<Path> path;
+  if (!options.path_file.empty()) path = load_path(options.path_file);
+  // The robot first: its guard is a child process, and children are made before the arena is.
+  std::unique_ptr<DriveBase> robot;
+  if (!options.robot.port.empty()) robot = open_robot(options.robot);
+  SourceOptions source_options = options.source;
+  if (robot) source_options.robot_state_path = robot->sim_state_path();
+  const std::unique_ptr<FrameSource> source = open_source(source_options);
+  const SourceInfo& info = source->info();
+  SessionResult result;
+  result.folder = prepare_run_folder(options.out, info.short_name, options.force);
+  if (!info.calibration_note.empty()) std::fprintf(stderr, "startrack: %s\n", info.calibration_note.c_str());
+
+  ObjectTracker tracker(info.calibration, options.loop);
+  ReportRing ring;
+  BudgetMonitor budget(BudgetColumn::kObject, info.frame_period_s, false);
+  MemoryPlan plan;
+  tracker.plan_memory(plan);
+  plan.add("timing statistics", "firmware_like", budget);
+  struct RingPart {
+    ReportRing& ring;
+    void bind(Bump& memory) { ring.bind(memory); }
+  } ring_part{ring};
+  plan.add("reports on their way out", "hal/results", ring_part);
+  Arena arena(plan.bytes());
+  plan.seal(arena.bump());
+  plan.print(stderr);
+  warn(arena.lock());
+  tracker.start();
+
+  ResultWriter writer(result.folder);
+  std::optional<ProgressLine> progress;
+  std::vector<TelemetrySink*> sinks{&writer};
+  if (isatty(STDERR_FILENO) != 0) sinks.push_back(&progress.emplace(info.expected_frames));
+  Telemetry telemetry(ring, sinks);
+  telemetry.start();
+  std::optional<PathDriver> driver;
+  if (robot && path) driver.emplace(*robot, *path);
+  Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr},
+            options.loop);
+  source->start();
+
+  RunEnd end;
+  const LoopEnd why = run_loop(loop, info.live, end);
+  if (robot) robot->close();
+  source->stop();
+  telemetry.stop();
+  progress.reset();
+
+  end.info = {STARTRACK_VERSION, info.name,         "object", options.tracker_name,
+              simd_name(),       options.path_file, info.live};
+  end.frames = loop.frames();
+  end.ending = ending_of(why);
+  end.signal = stop_signal();
+  end.last_t_s = loop.last_t_s();
+  end.floor_found = tracker.floor_found();
+  end.has_floor_frame = tracker.has_floor_frame();
+  end.T_floor_camera = tracker.T_floor_camera();
+  end.planned_bytes = plan.bytes();
+  end.deadline_misses = budget.counts().deadline_misses;
+  ModelMeshes meshes;
+  for (const ObjectCount& count : tracker.counts()) {
+    ObjectEnd object;
+    object.id = count.id;
+    object.first_t_s = count.first_t_s;
+    object.last_t_s = count.last_t_s;
+    object.tracked = count.tracked;
+    object.lost = count.lost;
+    object.good_at_end = count.good_at_end;
+    object.left_view = count.left_view;
+    for (const Track& track : tracker.tracks())
+      if (track.id == count.id && !mesh_unwanted()) object.mesh = meshes.extract(track.volume);
+    end.objects.push_back(object);
+  }
+  // Driven open loop, the robot is the object that went with it: the one that was tracked for longest.
+  std::uint64_t longest = 0;
+  for (const ObjectEnd& object : end.objects)
+    if (driver && object.tracked > longest) longest = object.tracked, end.steering_object = object.id;
+  end.peak_rss_bytes = peak_rss_bytes();
+  finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});
+  result.code = exit_code_of(end);
+  if (why == LoopEnd::kSourceFault) result.trouble = info.name + ": " + source->fault();
+  if (why == LoopEnd::kRobotFault)
+    result.trouble = options.robot.port + ": the robot reports " + name_of(driver->fault()) +
+                     "; see to it and start again";
+  return result;
+}
+
+}  // namespace st

@@ -1,0 +1,34 @@
+// A run from the command line to its result files: opens what is asked for, plans and seals the memory, runs
+// the loop on its own thread, and writes what it leaves behind.
+#pragma once
+
+#include <string>
+
+#include "firmware_like/config.hpp"
+#include "hal/create/drive_base.hpp"
+#include "hal/error.hpp"
+#include "hal/source/frame_source.hpp"
+
+namespace st {
+
+struct SessionOptions {
+  SourceOptions source;
+  RobotOptions robot;     // port empty: no robot
+  std::string path_file;  // empty: no path
+  LoopConfig loop;
+  std::string tracker_name = "star";
+  std::string out;  // run folder; empty: runs/DATE-TIME-SOURCE
+  bool force = false;
+  std::string simd;  // empty: the best that this CPU has
+};
+
+struct SessionResult {
+  ExitCode code = ExitCode::kDone;
+  std::string folder;
+  std::string trouble;  // one line for the user when a device or the robot failed; else empty
+};
+
+// Throws Failure for what keeps the run from starting, and for a disk that is full at the end.
+SessionResult run_session(const SessionOptions& options);
+
+}  // namespace st

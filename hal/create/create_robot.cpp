@@ -1,0 +1,253 @@
+#include "hal/create/create_robot.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "hal/clock.hpp"
+#include "hal/error.hpp"
+
+namespace st {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kSilent_ns = 150 * kMs;  // ten slots of the stream
+constexpr std::int64_t kDistancePeriod_ns =
+    300 * kMs;  // Create 1: seldom, since each reading rounds to a degree
+constexpr int kReaderWait_ms = 20;
+constexpr int kControlTries = 5, kControlWait_ms = 400;
+constexpr int kGuardEnd_ms = 1000;
+constexpr int kWeakFrames = 67;   // a second
+constexpr int kEmpty_mv = 12000;  // twelve cells at 1.0 V
+
+// What every model is asked for, slot after slot; 59 bytes a frame at most, which fits 57600 baud.
+constexpr std::uint8_t kCommonPackets[] = {7, 9, 10, 11, 12, 13, 14, 21, 22, 23, 24, 25, 26, 34, 35, 41, 42};
+constexpr std::uint8_t kCreate2Packets[] = {43, 44, 45, 54, 55, 58};
+constexpr std::uint8_t kDistancePackets[] = {19, 20};
+
+oi::Command stream_list(RobotModel model, bool with_distance) {
+  std::vector<std::uint8_t> packets(std::begin(kCommonPackets), std::end(kCommonPackets));
+  if (model == RobotModel::kCreate2)
+    packets.insert(packets.end(), std::begin(kCreate2Packets), std::end(kCreate2Packets));
+  if (with_distance) packets.insert(packets.end(), std::begin(kDistancePackets), std::end(kDistancePackets));
+  return oi::stream(packets);
+}
+
+GuardOrders orders_for(RobotModel model) {
+  GuardOrders orders;
+  orders.stop = oi::halt();
+  orders.farewell = oi::pause_stream(false);
+  orders.farewell.add(oi::kStart);  // Passive: it can charge
+  if (model == RobotModel::kCreate2)
+    orders.farewell.add(oi::kStop);  // and Off; the Create 1 has no such opcode
+  return orders;
+}
+
+}  // namespace
+
+const char* name_of(RobotFault fault) {
+  switch (fault) {
+    case RobotFault::kNone:
+      return "none";
+    case RobotFault::kSilent:
+      return "silent";
+    case RobotFault::kDisconnected:
+      return "disconnected";
+    case RobotFault::kBump:
+      return "bump";
+    case RobotFault::kCliff:
+      return "cliff";
+    case RobotFault::kWheelDrop:
+      return "wheel_drop";
+    case RobotFault::kLeftSafeMode:
+      return "left_safe_mode";
+    case RobotFault::kLowBattery:
+      return "low_battery";
+  }
+  return "unknown";
+}
+
+CreateRobot::CreateRobot(std::unique_ptr<SerialPort> port, const RobotIdentity& identity,
+                         std::unique_ptr<RobotLogWriter> log, std::unique_ptr<SimChild> sim)
+    : identity_(identity),
+      geometry_(oi::default_geometry(identity.model)),
+      port_path_(port->path()),
+      log_(std::move(log)),
+      sim_(std::move(sim)),
+      guard_(start_guard(port->fd(), orders_for(identity.model), sim_ ? sim_->lifeline() : -1)),
+      heard_ns_(system_clock().monotonic_ns()),
+      stream_(identity.model, geometry_) {
+  log_->set_model(identity.model);
+  // Signals are for the program's own threads.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  reader_ = std::thread([this] { read_robot(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void CreateRobot::take_control() {
+  send(stream_list(identity_.model, false));
+  const timespec moment{0, 5 * kMs};
+  for (int attempt = 0; attempt < kControlTries; ++attempt) {
+    send(oi::simple(oi::kSafe));
+    const std::uint64_t before = good_frames_.load();
+    for (int waited_ms = 0; waited_ms < kControlWait_ms && !disconnected_.load(); waited_ms += 5) {
+      nanosleep(&moment, nullptr);
+      const bool told =
+          identity_.mode_trusted ? mode_.load() == oi::kSafeMode : good_frames_.load() > before + 10;
+      if (!told) continue;
+      noted_.store(0);
+      in_control_.store(true);
+      return;
+    }
+  }
+  const char* why = good_frames_.load() == 0
+                        ? "its sensor stream does not come; switch it off and on"
+                        : "it refuses Safe mode; take it off the charger and put all wheels on the floor, "
+                          "away from edges";
+  throw Failure(ExitCode::kDeviceFault, "robot port " + port_path_ + ": the robot answers, but " + why);
+}
+
+bool CreateRobot::send(const oi::Command& command) {
+  return ::send(guard_.link, command.bytes, command.size, MSG_DONTWAIT | MSG_NOSIGNAL) ==
+         static_cast<ssize_t>(command.size);
+}
+
+bool CreateRobot::drive(double left_mps, double right_mps) {
+  const bool sane = std::isfinite(left_mps) && std::isfinite(right_mps);
+  const double fastest = sane ? std::max(std::fabs(left_mps), std::fabs(right_mps)) * 1000.0 : 0.0;
+  // Both wheels give way alike, so that the curve stays the same.
+  const double scale = !sane                          ? 0.0
+                       : fastest > oi::kMaxWheel_mmps ? 1000.0 * oi::kMaxWheel_mmps / fastest
+                                                      : 1000.0;
+  const auto mmps = [&](double mps) { return sane ? static_cast<int>(std::lround(mps * scale)) : 0; };
+  return send(oi::drive_direct(mmps(left_mps), mmps(right_mps))) && sane;
+}
+
+void CreateRobot::poll(FixedVector<OdometrySample, 64>& odometry, RobotStatus& status) {
+  OdometrySample sample;
+  while (!odometry.full() && travel_.pop(sample)) odometry.push_back(sample);
+  const std::int64_t now_ns = system_clock().monotonic_ns();
+  status.fault = worst_fault(now_ns);
+  status.last_heard_s = static_cast<double>(now_ns - heard_ns_.load()) * 1e-9;
+  status.good_frames = good_frames_.load();
+  status.bad_bytes = bad_bytes_.load();
+  status.oi_mode = mode_.load();
+  status.battery_mv = battery_mv_.load();
+}
+
+// What was noted since the last call, worst first. A bump of a few slots must not fall between two calls.
+RobotFault CreateRobot::worst_fault(std::int64_t now_ns) {
+  const std::uint32_t noted = noted_.exchange(0);
+  if (disconnected_.load()) return RobotFault::kDisconnected;
+  if (now_ns - heard_ns_.load() > kSilent_ns) return RobotFault::kSilent;
+  for (const RobotFault fault : {RobotFault::kWheelDrop, RobotFault::kCliff, RobotFault::kBump,
+                                 RobotFault::kLeftSafeMode, RobotFault::kLowBattery})
+    if ((noted >> static_cast<unsigned>(fault) & 1) != 0) return fault;
+  return RobotFault::kNone;
+}
+
+void CreateRobot::read_robot() {
+  std::uint8_t message[kGuardMessageBytes];
+  for (;;) {
+    pollfd ready{guard_.link, POLLIN, 0};
+    if (::poll(&ready, 1, kReaderWait_ms) > 0) {
+      const ssize_t n = recv(guard_.link, message, sizeof message, MSG_DONTWAIT);
+      if (n == 0) break;
+      if (n > 0) on_message({message, static_cast<std::size_t>(n)});
+    }
+    if (identity_.model == RobotModel::kCreate1 && in_control_.load())
+      ask_for_distance(system_clock().monotonic_ns());
+  }
+  if (!closing_.load()) stop_without_guard();
+  disconnected_.store(true);
+}
+
+void CreateRobot::on_message(std::span<const std::uint8_t> message) {
+  const double t_s = host_seconds();
+  const std::span<const std::uint8_t> bytes = message.subspan(1);
+  if (message[0] == kGuardPortGone)
+    disconnected_.store(true);
+  else
+    log_->add(t_s, message[0] == kGuardReceived, bytes);
+  if (message[0] != kGuardReceived) return;
+  stream_.receive(
+      t_s, bytes, [this](const SensorState& state) { on_frame(state); },
+      [this](const OdometrySample& sample) { travel_.push(sample); });
+  bad_bytes_.store(stream_.parser().bad_bytes());
+}
+
+void CreateRobot::on_frame(const SensorState& state) {
+  const std::int64_t now_ns = system_clock().monotonic_ns();
+  if (state.has(oi::kDistance)) distance_came_ = true;
+  battery_mv_.store(state.value(oi::kVoltage));
+  const int mode = identity_.mode_trusted ? state.value(oi::kOiMode) - identity_.mode_offset : oi::kSafeMode;
+  mode_.store(mode);
+  heard_ns_.store(now_ns);
+  good_frames_.store(stream_.parser().good_frames());
+  if (state.bump_left() || state.bump_right()) note(RobotFault::kBump);
+  if (state.wheel_drop()) note(RobotFault::kWheelDrop);
+  if (state.cliff()) note(RobotFault::kCliff);
+  if (in_control_.load() && mode < oi::kSafeMode) note(RobotFault::kLeftSafeMode);
+  const bool empty =
+      state.value(oi::kCharge) * 20 < state.value(oi::kCapacity) || state.value(oi::kVoltage) < kEmpty_mv;
+  weak_frames_ = empty ? weak_frames_ + 1 : 0;
+  if (weak_frames_ >= kWeakFrames) note(RobotFault::kLowBattery);
+}
+
+// Create 1: distance and angle join the stream for a frame now and then, so that they come under its
+// checksum.
+void CreateRobot::ask_for_distance(std::int64_t now_ns) {
+  const bool due = now_ns - distance_asked_ns_ > kDistancePeriod_ns;
+  const bool got = distance_in_list_ && distance_came_;
+  if (!due && !got) return;
+  distance_in_list_ = !got;
+  distance_came_ = false;
+  if (distance_in_list_) distance_asked_ns_ = now_ns;
+  send(stream_list(identity_.model, distance_in_list_));
+}
+
+// The guard was killed. Its port is free again: the robot must not go on with its last command.
+void CreateRobot::stop_without_guard() {
+  try {
+    SerialPort port(port_path_, identity_.baud);
+    port.write(oi::halt().span());
+    log_->add(host_seconds(), false, oi::halt().span());
+  } catch (const Failure&) {
+    // The port is gone as well, and nothing reaches the robot.
+  }
+}
+
+void CreateRobot::close() {
+  if (closing_.exchange(true)) return;
+  stop();
+  shutdown(guard_.link,
+           SHUT_WR);  // the guard stops the robot once more, says farewell and ends; its echo is still logged
+  if (!wait_for_child(guard_.pid, kGuardEnd_ms)) shutdown(guard_.link, SHUT_RDWR);
+  reader_.join();
+  ::close(guard_.link);
+  sim_.reset();
+}
+
+std::unique_ptr<DriveBase> open_robot(const RobotOptions& options) {
+  auto log = std::make_unique<RobotLogWriter>(options.log_path);
+  std::optional<RobotModel> told;
+  if (options.model_given) told = options.model;
+  std::unique_ptr<SimChild> sim;
+  if (options.port == "sim") sim = std::make_unique<SimChild>(options.model, options.seed);
+  auto port = std::make_unique<SerialPort>(sim ? sim->port() : options.port, oi::default_baud(options.model));
+  const RobotIdentity identity = meet_robot(*port, told, *log);
+  auto robot = std::make_unique<CreateRobot>(std::move(port), identity, std::move(log), std::move(sim));
+  robot->take_control();
+  return robot;
+}
+
+}  // namespace st

@@ -1,0 +1,144 @@
+#include "algo/tracking/motion_filter.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include "algo/core/scalar_math.hpp"
+
+using namespace st;
+
+namespace {
+
+constexpr double kPeriod_s = 1.0 / 30;
+
+struct Covariance {
+  double m[36]{};
+  Covariance(double sigma_m, double sigma_rad) {
+    for (int i = 0; i < 6; ++i) m[7 * i] = i < 3 ? sigma_m * sigma_m : sigma_rad * sigma_rad;
+  }
+};
+const Covariance kSure{1e-5, 1e-5};
+
+// Camera that looks along the floor's y axis, slightly down.
+const Mat3 kFloorFromCamera = rotation_from_vector({-kPi / 2 - 0.3, 0, 0});
+
+// Drives straight and turns at constant rates, in floor axes.
+Pose truth(double t_s) {
+  const Mat3 R = kFloorFromCamera.transposed();
+  return {R * rotation_z(0.5 * t_s), Vec3{0.1, 0.2, 1.5} + R * Vec3{0.2 * t_s, 0.1 * t_s, 0}};
+}
+
+double error_m(const Pose& a, const Pose& b) { return norm(a.t - b.t); }
+double error_rad(const Pose& a, const Pose& b) { return rotation_angle(a.R.transposed() * b.R); }
+
+// Feeds true poses for so many frames; the filter then stands at frame `frames`, corrected.
+MotionFilter after(int frames, const Covariance& covariance = kSure) {
+  MotionFilter filter;
+  filter.start(truth(0), kFloorFromCamera, 0);
+  for (int k = 1; k <= frames; ++k) {
+    filter.predict(k * kPeriod_s, {});
+    filter.correct(truth(k * kPeriod_s), covariance.m);
+  }
+  return filter;
+}
+
+}  // namespace
+
+TEST_GROUP(MotionFilter){};
+
+TEST(MotionFilter, StartsAtRest) {
+  MotionFilter filter;
+  filter.start(truth(0), kFloorFromCamera, 10);
+  filter.predict(10.5, {});
+  DOUBLES_EQUAL(0, error_m(truth(0), filter.pose()), 1e-12);
+  DOUBLES_EQUAL(10.5, filter.t_s(), 0);
+}
+
+TEST(MotionFilter, ConstantVelocityIsPredicted) {
+  MotionFilter filter = after(12);
+  DOUBLES_EQUAL(0.2, filter.velocity_mps().x, 0.01);
+  DOUBLES_EQUAL(0.1, filter.velocity_mps().y, 0.01);
+  DOUBLES_EQUAL(0.5, filter.angular_velocity_rps().z, 0.02);
+  filter.predict(15 * kPeriod_s, {});  // three frames ahead at once
+  DOUBLES_EQUAL(0, error_m(truth(15 * kPeriod_s), filter.pose()), 0.002);
+  DOUBLES_EQUAL(0, error_rad(truth(15 * kPeriod_s), filter.pose()), 0.004);
+}
+
+TEST(MotionFilter, MotionOverTakesPointsAlong) {
+  const MotionFilter filter = after(12);
+  const Pose step = filter.motion_over(0.02);
+  const Pose there = step * filter.pose();
+  DOUBLES_EQUAL(0, error_m(truth(12 * kPeriod_s + 0.02), there), 5e-4);
+  const Pose back = filter.motion_over(-0.02) * filter.pose();
+  DOUBLES_EQUAL(0, error_m(truth(12 * kPeriod_s - 0.02), back), 5e-4);
+}
+
+TEST(MotionFilter, UncertaintyGrowsWithTimeAndShrinksWithAPose) {
+  MotionFilter filter = after(5);
+  const double known = filter.position_sigma_m();
+  filter.predict(filter.t_s() + kPeriod_s, {});
+  const double soon = filter.position_sigma_m();
+  filter.predict(filter.t_s() + 5 * kPeriod_s, {});
+  const double later = filter.position_sigma_m();
+  CHECK(known < soon && soon < later);
+  filter.correct(truth(filter.t_s()), kSure.m);
+  CHECK(filter.position_sigma_m() < soon);
+}
+
+TEST(MotionFilter, RatesFollowAPoseByAsMuchAsItIsSure) {
+  // One frame with the same surprise, seen sharply and hardly.
+  const auto rate_after = [](double sigma_m) {
+    MotionFilter filter = after(5);
+    filter.predict(6 * kPeriod_s, {});
+    Pose surprise = filter.pose();
+    surprise.t += Vec3{0.01, 0, 0};
+    // The posterior of a pose that the prior, too, had a say in: its shift is smaller by the same share.
+    const double prior = 1 / filter.prior().information[0], share = prior / (prior + sigma_m * sigma_m);
+    surprise.t = filter.pose().t + (surprise.t - filter.pose().t) * share;
+    const double posterior = prior * sigma_m * sigma_m / (prior + sigma_m * sigma_m);
+    Covariance covariance{1e-5, 1e-5};
+    covariance.m[0] = posterior;
+    const double before = (kFloorFromCamera.transposed() * filter.velocity_mps()).x;
+    filter.correct(surprise, covariance.m);
+    return (kFloorFromCamera.transposed() * filter.velocity_mps()).x - before;
+  };
+  const double sharp = rate_after(1e-4), vague = rate_after(0.05);
+  CHECK(sharp > 0.02);  // 10 mm in a frame are 0.3 m/s, damped by what the filter knew
+  CHECK(vague > 0 && vague < 0.2 * sharp);
+}
+
+TEST(MotionFilter, ThePriorIsThatOfTheAxesTheFilterWorksIn) {
+  MotionFilter filter = after(5, Covariance{1e-4, 1e-3});
+  filter.predict(6 * kPeriod_s, {});
+  const MotionPrior prior = filter.prior();
+  DOUBLES_EQUAL(0, error_m(prior.mean, filter.pose()), 0);
+  for (int i = 0; i < 6; ++i) {
+    CHECK(prior.information[7 * i] > 0);
+    for (int j = 0; j < i; ++j)
+      DOUBLES_EQUAL(prior.information[6 * i + j], prior.information[6 * j + i], 1e-6);
+  }
+  DOUBLES_EQUAL(0, prior.information[3], 0);  // turn and place apart
+}
+
+TEST(MotionFilter, CoastingFadesAndRestStops) {
+  MotionFilter filter = after(12);
+  filter.coast(0.5);
+  DOUBLES_EQUAL(0.1, filter.velocity_mps().x, 0.01);
+  filter.rest();
+  filter.predict(1.0, {});
+  DOUBLES_EQUAL(0, error_m(truth(12 * kPeriod_s), filter.pose()), 1e-12);
+}
+
+TEST(MotionFilter, PublishedRatesSettleOnTheTruth) {
+  const MotionFilter filter = after(40);
+  DOUBLES_EQUAL(0.2, filter.output().velocity_mps.x, 0.002);
+  DOUBLES_EQUAL(0.5, filter.output().angular_velocity_rps.z, 0.005);
+  DOUBLES_EQUAL(0, filter.output().acceleration_mps2.x, 0.03);
+}
+
+TEST(MotionFilter, TimeThatStandsStillChangesNothing) {
+  MotionFilter filter = after(5);
+  const Pose before = filter.pose();
+  filter.predict(filter.t_s(), {});
+  filter.predict(filter.t_s() - 1, {});
+  DOUBLES_EQUAL(0, error_m(before, filter.pose()), 0);
+}

@@ -1,0 +1,172 @@
+#include "hal/create/oi_stream.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <initializer_list>
+#include <vector>
+
+#include "hal/sim/random.hpp"
+
+using namespace st;
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+void append(Bytes& to, const Bytes& more) {
+  for (const std::uint8_t byte : more) to.push_back(byte);
+}
+
+std::vector<SensorState> parse(StreamParser& parser, const Bytes& bytes) {
+  std::vector<SensorState> frames;
+  SensorState state;
+  for (const std::uint8_t byte : bytes) {
+    parser.push(byte);
+    while (parser.next(state)) frames.push_back(state);
+  }
+  return frames;
+}
+
+// A frame around the given ids and data, built here from the specification and not by the code under test.
+Bytes frame(const Bytes& payload) {
+  Bytes out;
+  out.push_back(19);
+  out.push_back(static_cast<std::uint8_t>(payload.size()));
+  append(out, payload);
+  unsigned sum = 0;
+  for (const std::uint8_t b : out) sum += b;
+  out.push_back(static_cast<std::uint8_t>(256 - (sum & 255)));
+  return out;
+}
+
+// Frame i of a recording: voltage i, both encoders, and 19s in the payload.
+Bytes numbered(int i) {
+  const auto low = static_cast<std::uint8_t>(i & 255), high = static_cast<std::uint8_t>(i >> 8);
+  return frame({22, high, low, 43, 19, 19, 44, 19, low, 24, 19, 35, 2});
+}
+
+}  // namespace
+
+TEST_GROUP(OiStream){};
+
+TEST(OiStream, ReadsTheVectorOfTheSpecification) {
+  StreamParser parser(RobotModel::kCreate2);
+  const auto frames = parse(parser, {19, 5, 29, 2, 25, 13, 0, 163});
+  UNSIGNED_LONGS_EQUAL(1, frames.size());
+  LONGS_EQUAL(537, frames[0].value(29));
+  LONGS_EQUAL(0, frames[0].value(13));
+  CHECK(frames[0].has(29));
+  CHECK_FALSE(frames[0].has(28));
+}
+
+TEST(OiStream, RefusesAWrongChecksumAndTheRuleWithoutTheHeader) {
+  StreamParser parser(RobotModel::kCreate1);
+  UNSIGNED_LONGS_EQUAL(0, parse(parser, {19, 5, 29, 2, 25, 13, 0, 164}).size());
+  parser.clear();
+  UNSIGNED_LONGS_EQUAL(0, parse(parser, {19, 5, 29, 2, 25, 13, 0, 182}).size());
+}
+
+TEST(OiStream, DecodesSignsAndGroups) {
+  StreamParser parser(RobotModel::kCreate2);
+  Bytes payload{3};
+  append(payload, {2, 0x3a, 0x98, 0xff, 0x38, 0xfb, 0x0a, 0x8c, 0x0b, 0xb8});
+  const auto frames = parse(parser, frame(payload));
+  UNSIGNED_LONGS_EQUAL(1, frames.size());
+  LONGS_EQUAL(2, frames[0].value(21));
+  LONGS_EQUAL(15000, frames[0].value(22));
+  LONGS_EQUAL(-200, frames[0].value(23));
+  LONGS_EQUAL(-5, frames[0].value(24));
+  LONGS_EQUAL(2700, frames[0].value(25));
+  LONGS_EQUAL(3000, frames[0].value(26));
+}
+
+TEST(OiStream, NamesWhatTheRobotTouches) {
+  SensorState state;
+  const std::uint8_t bumps[] = {0x02};
+  decode_packet(RobotModel::kCreate1, 7, bumps, state);
+  CHECK(state.bump_left() && !state.bump_right() && !state.wheel_drop());
+  const std::uint8_t caster[] = {0x10};
+  decode_packet(RobotModel::kCreate1, 7, caster, state);
+  CHECK(state.wheel_drop() && !state.bump_left());
+  const std::uint8_t edge[] = {1};
+  decode_packet(RobotModel::kCreate1, 11, edge, state);
+  CHECK(state.cliff());
+}
+
+TEST(OiStream, AFalseHeaderDoesNotCostTheFrameBehindIt) {
+  // `19 19 N ...`: the first 19 takes the second for its length.
+  StreamParser parser(RobotModel::kCreate2);
+  Bytes bytes{19};
+  append(bytes, numbered(7));
+  const auto frames = parse(parser, bytes);
+  UNSIGNED_LONGS_EQUAL(1, frames.size());
+  LONGS_EQUAL(7, frames[0].value(22));
+}
+
+// Whatever happens to one frame, its neighbours arrive, complete and unchanged, and no later than their own
+// last byte.
+TEST(OiStream, DamageCostsOnlyTheFrameItTouched) {
+  sim::Random random(5);
+  for (int trial = 0; trial < 3000; ++trial) {
+    Bytes bytes, damaged = numbered(1000);
+    const std::size_t at = static_cast<std::size_t>(random.below(static_cast<int>(damaged.size())));
+    const auto where = damaged.begin() + static_cast<std::ptrdiff_t>(at);
+    switch (random.below(4)) {
+      case 0:
+        damaged.erase(where);
+        break;
+      case 1:
+        damaged.insert(where, *where);
+        break;
+      case 2:
+        *where = static_cast<std::uint8_t>(*where ^ (1 << random.below(8)));
+        break;
+      default:
+        damaged.resize(at);
+    }
+    append(bytes, numbered(1));
+    append(bytes, damaged);
+    append(bytes, numbered(2));
+    append(bytes, numbered(3));
+    StreamParser parser(RobotModel::kCreate2);
+    const auto frames = parse(parser, bytes);
+    // A cut exactly at a frame's end, or a repeat that is no damage, leaves at most the four that were sent.
+    CHECK(frames.size() >= 3 && frames.size() <= 4);
+    LONGS_EQUAL(1, frames.front().value(22));
+    LONGS_EQUAL(2, frames[frames.size() - 2].value(22));
+    LONGS_EQUAL(3, frames.back().value(22));
+  }
+}
+
+TEST(OiStream, NoiseAndTextOfTheRobotBetweenFramesCostNone) {
+  sim::Random random(9);
+  Bytes bytes;
+  for (int i = 0; i < 500; ++i) {
+    for (int n = random.below(40); n > 0; --n)
+      bytes.push_back(static_cast<std::uint8_t>(32 + random.below(90)));
+    append(bytes, numbered(i));
+  }
+  StreamParser parser(RobotModel::kCreate2);
+  const auto frames = parse(parser, bytes);
+  UNSIGNED_LONGS_EQUAL(500, frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) LONGS_EQUAL(static_cast<int>(i), frames[i].value(22));
+  UNSIGNED_LONGS_EQUAL(500, parser.good_frames());
+  UNSIGNED_LONGS_EQUAL(bytes.size() - 500 * numbered(0).size(), parser.bad_bytes());
+}
+
+TEST(OiStream, AnyBytesWhateverKeepItWithinItsMemory) {
+  sim::Random random(11);
+  for (const RobotModel model : {RobotModel::kCreate1, RobotModel::kCreate2}) {
+    StreamParser parser(model);
+    SensorState state;
+    for (int i = 0; i < 200000; ++i) {
+      // Headers and lengths far more often than chance, so that long false frames come about.
+      const int kind = random.below(4);
+      parser.push(static_cast<std::uint8_t>(kind == 0   ? 19
+                                            : kind == 1 ? 7 + random.below(52)
+                                                        : random.below(256)));
+      while (parser.next(state)) {
+      }
+    }
+  }
+}

@@ -1,0 +1,38 @@
+// startrack run: the live loop.
+#include <memory>
+
+#include "tools/startrack/session_command.hpp"
+
+namespace st {
+
+void add_run(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<SessionOptions>();
+  CLI::App* command =
+      app.add_subcommand("run", "Track what moves before the Kinect, and drive the robot along a path");
+  command->footer(
+      "Examples:\n"
+      "  startrack run --source kinect --seconds 60\n"
+      "  startrack run --source kinect --robot /dev/ttyUSB0 --path examples/paths/circle-0.5.toml\n"
+      "  startrack run --source sim:lab --robot sim --path examples/paths/circle-0.5.toml");
+  command
+      ->add_option("--source", options->source.spec,
+                   "kinect[:INDEX or SERIAL], sim:SCENE, or a recording's folder")
+      ->required()
+      ->type_name("SRC");
+  command->add_option("--robot", options->robot.port, "serial port of the Create, or sim")->type_name("PORT");
+  command
+      ->add_option_function<std::uint64_t>(
+          "--seed",
+          [options](const std::uint64_t& seed) { options->source.seed = options->robot.seed = seed; },
+          "of the simulated room and robot")
+      ->default_str("1");
+  add_session_options(*command, *options);
+  command->callback([options, &exit_code] {
+    if (!options->robot.port.empty() && options->path_file.empty())
+      throw Failure(ExitCode::kBadInput,
+                    "--robot " + options->robot.port + " needs --path FILE: what shall it drive?");
+    exit_code = run_and_report(*options);
+  });
+}
+
+}  // namespace st

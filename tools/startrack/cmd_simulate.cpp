@@ -1,0 +1,127 @@
+// startrack simulate: a scene as a recording with ground truth.
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <system_error>
+
+#include "hal/error.hpp"
+#include "hal/sim/sim_recording.hpp"
+#include "tools/startrack/commands.hpp"
+
+namespace st {
+namespace {
+
+std::atomic<bool> g_stop{false};
+
+struct Options {
+  std::string scene, folder, path_file, robot = "create2";
+  std::uint64_t seed = 1;
+  double seconds = 0;
+  bool laptop = false, force = false;
+};
+
+// The speeds of a preset path: a table `t,x,y,yaw,v,w` as path.csv has it.
+std::vector<sim::DriveCommand> read_path(const std::string& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!in || !std::getline(in, line))
+    throw Failure(ExitCode::kBadInput,
+                  file + ": cannot be read; give a path.csv with the columns t,x,y,yaw,v,w");
+  std::vector<sim::DriveCommand> commands;
+  for (int number = 2; std::getline(in, line); ++number) {
+    if (line.empty() || line == "\r") continue;
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream row(line);
+    double t = 0, x = 0, y = 0, yaw = 0, v = 0, w = 0;
+    if (!(row >> t >> x >> y >> yaw >> v >> w) || (!commands.empty() && t <= commands.back().t_s))
+      throw Failure(ExitCode::kBadInput,
+                    file + ": line " + std::to_string(number) + ": want t,x,y,yaw,v,w with rising t");
+    commands.push_back({t, v, w});
+  }
+  if (commands.empty())
+    throw Failure(ExitCode::kBadInput, file + ": holds no row; give a path of at least one");
+  commands.push_back({commands.back().t_s + 0.02, 0, 0});
+  return commands;
+}
+
+void prepare_folder(const Options& o) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::create_directories(o.folder, error);
+  if (error || !fs::is_directory(o.folder))
+    throw Failure(ExitCode::kBadInput,
+                  o.folder + ": cannot be made (" + error.message() + "); choose another --out");
+  if (fs::is_empty(o.folder)) return;
+  if (!o.force)
+    throw Failure(
+        ExitCode::kBadInput,
+        o.folder + ": is not empty; choose another --out, or --force to replace the recording in it");
+  sim::clear_recording(o.folder);
+}
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { g_stop.store(true); };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+}
+
+int simulate(const Options& o) {
+  sim::SceneOptions scene;
+  scene.name = o.scene;
+  scene.seed = o.seed;
+  scene.robot = o.robot == "create1" ? RobotModel::kCreate1 : RobotModel::kCreate2;
+  scene.laptop = o.laptop;
+  scene.seconds = o.seconds;
+  if (!o.path_file.empty()) scene.path = read_path(o.path_file);
+  sim::Scene made = sim::make_scene(scene);
+  prepare_folder(o);
+  catch_signals();
+  sim::CameraRig rig(std::move(made));
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const std::uint64_t written =
+      sim::write_recording(rig, o.folder, g_stop, [&](std::uint64_t done, std::uint64_t total) {
+        if (terminal && (done % 15 == 0 || done == total))
+          std::fprintf(stderr, "\r%llu of %llu frames", static_cast<unsigned long long>(done),
+                       static_cast<unsigned long long>(total));
+      });
+  if (terminal) std::fputc('\n', stderr);
+  std::printf("recording: %s (%llu depth frames)\n", o.folder.c_str(),
+              static_cast<unsigned long long>(written));
+  return static_cast<int>(g_stop.load() ? ExitCode::kInterrupted : ExitCode::kDone);
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("simulate", "Write a synthetic recording with ground truth");
+  std::string scenes;
+  for (const char* name : sim::scene_names()) scenes += std::string(scenes.empty() ? "" : ", ") + name;
+  command->add_option("SCENE", options->scene, "One of: " + scenes)->required();
+  command->add_option("--out", options->folder, "Folder of the recording; made, and must be empty")
+      ->required();
+  command
+      ->add_option("--seed", options->seed,
+                   "Room, camera, noise and wheel errors; the same seed gives the same bytes")
+      ->capture_default_str();
+  command->add_option("--path", options->path_file,
+                      "Preset path of the first robot instead of the scene's own (columns t,x,y,yaw,v,w)");
+  command->add_option("--robot-model", options->robot, "create1 or create2")
+      ->check(CLI::IsMember({"create1", "create2"}))
+      ->capture_default_str();
+  command->add_flag("--laptop", options->laptop, "An open laptop lies on the first robot");
+  command->add_option("--seconds", options->seconds, "Length instead of the scene's own")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--force", options->force, "Replace a recording that stands in the folder");
+  command->footer("Example: startrack simulate circle --out /tmp/circle --seed 7 --robot-model create1");
+  command->callback([options, &exit_code] { exit_code = simulate(*options); });
+}
+
+}  // namespace st

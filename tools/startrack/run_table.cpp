@@ -1,0 +1,52 @@
+#include "tools/startrack/run_table.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "algo/control/circle_fit.hpp"
+#include "hal/results/line_file.hpp"
+#include "hal/results/run_record.hpp"
+
+namespace st {
+namespace {
+
+using Json = nlohmann::json;
+
+double milliseconds(const Json& us) { return us.is_number() ? us.get<double>() / 1000 : 0; }
+double mebibytes(const Json& bytes) { return bytes.is_number() ? bytes.get<double>() / (1 << 20) : 0; }
+
+void print_path(const Json& path) {
+  if (!path.is_object()) return;
+  std::printf(
+      "  path error            as placed %.1f mm RMSE (largest %.1f), by shape %.1f mm; heading %.2f deg\n",
+      path["rmse_as_placed_m"].get<double>() * 1e3, path["max_m"].get<double>() * 1e3,
+      path["rmse_shape_m"].get<double>() * 1e3, path["heading_rmse_rad"].get<double>() * 57.29577951);
+}
+
+}  // namespace
+
+void print_run_table(const std::string& run_folder, const std::string& path_file) {
+  const Json summary = Json::parse(read_whole_file(run_folder + "/summary.json"));
+  std::printf("  frames                %llu\n", summary["frames"].get<unsigned long long>());
+  for (const Json& object : summary["objects"])
+    std::printf("  object %-3d            tracked %llu, lost %llu frames; path %.2f m\n",
+                object["id"].get<int>(), object["tracked"].get<unsigned long long>(),
+                object["lost"].get<unsigned long long>(), object["path_length_m"].get<double>());
+  if (summary["objects"].empty()) std::printf("  objects               none: nothing moved\n");
+  if (!path_file.empty()) print_path(summary["path"]);
+  const Json& cpu = summary["timing"]["cpu_us"];
+  const Json& frame = summary["timing"]["frame_us"];
+  std::printf("  frame time, CPU       p50 %.2f  p99 %.2f  max %.2f ms\n", milliseconds(cpu["p50"]),
+              milliseconds(cpu["p99"]), milliseconds(cpu["max"]));
+  std::printf("  frame time, wall      p50 %.2f  p99 %.2f  max %.2f ms\n", milliseconds(frame["p50"]),
+              milliseconds(frame["p99"]), milliseconds(frame["max"]));
+  const Json& memory = summary["memory"];
+  std::printf(
+      "  memory                planned %.1f MiB, peak %.1f MiB; after seal %llu heap calls, %llu page "
+      "faults\n",
+      mebibytes(memory["planned_bytes"]), mebibytes(memory["peak_rss_bytes"]),
+      memory["heap_calls_after_seal"].get<unsigned long long>(),
+      memory["page_faults_after_seal"].get<unsigned long long>());
+}
+
+}  // namespace st

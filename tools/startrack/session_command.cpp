@@ -1,0 +1,85 @@
+#include "tools/startrack/session_command.hpp"
+
+#include <cstdio>
+#include <map>
+
+#include "tools/report/run_report.hpp"
+#include "tools/startrack/run_table.hpp"
+
+namespace st {
+namespace {
+
+struct Term {
+  const char* name;
+  bool LoopConfig::*used;
+};
+constexpr Term kTerms[] = {{"edges", &LoopConfig::use_contour},
+                           {"colour", &LoopConfig::use_color},
+                           {"floor", &LoopConfig::use_floor},
+                           {"motion", &LoopConfig::use_motion}};
+
+void leave_out(LoopConfig& config, const std::string& name) {
+  for (const Term& term : kTerms) {
+    if (name != term.name) continue;
+    config.*term.used = false;
+    return;
+  }
+  throw Failure(ExitCode::kBadInput,
+                "--without " + name + ": no such term; there are edges, colour, floor, motion");
+}
+
+}  // namespace
+
+void add_session_options(CLI::App& command, SessionOptions& options) {
+  command.add_option("--path", options.path_file, "the preset path: TOML program or CSV way points")
+      ->type_name("FILE");
+  command.add_option_function<std::string>(
+      "--tracker",
+      [&options](const std::string& name) {
+        if (name == "star") {
+          options.loop.tracker = TrackerKind::kStar;
+        } else if (name == "frame-to-frame") {
+          options.loop.tracker = TrackerKind::kFrameToFrame;
+        } else {
+          throw Failure(ExitCode::kBadInput,
+                        "--tracker " + name + ": no such tracker; there are star, frame-to-frame");
+        }
+        options.tracker_name = name;
+      },
+      "star (frame to updated model) or frame-to-frame (the paper's first approach)");
+  command
+      .add_option(
+          "--keyframes", options.loop.keyframe_every,
+          "frame-to-frame: keep a frame as the reference for so many frames (0: each frame follows the last)")
+      ->check(CLI::Range(0, 1000));
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--without",
+          [&options](const std::vector<std::string>& names) {
+            for (const std::string& name : names) leave_out(options.loop, name);
+          },
+          "leave pose terms out: edges, colour, floor, motion")
+      ->delimiter(',')
+      ->type_name("TERM[,TERM]");
+  command
+      .add_option("--camera", options.source.camera_file,
+                  "calibration instead of the recording's camera.toml")
+      ->type_name("FILE");
+  command.add_option("--volume", options.loop.volume_side, "voxels a side of each object's volume")
+      ->check(CLI::IsMember({128, 192, 256, 384, 512}));
+  command.add_option("--simd", options.simd, "instruction set: SSSE3, SSE4, AVX2 or AVX3")->type_name("NAME");
+  command.add_option("--seconds", options.loop.seconds, "stop after so long")->check(CLI::NonNegativeNumber);
+  command.add_option("--out", options.out, "run folder (default: runs/DATE-TIME-SOURCE)")->type_name("RUN");
+  command.add_flag("--force", options.force, "replace the result files of an earlier run in --out");
+}
+
+int run_and_report(const SessionOptions& options) {
+  const SessionResult result = run_session(options);
+  if (!result.trouble.empty()) std::fprintf(stderr, "startrack: %s\n", result.trouble.c_str());
+  print_run_table(result.folder, options.path_file);
+  if (!options.path_file.empty()) std::printf("report: %s\n", write_report(result.folder).c_str());
+  std::printf("run: %s\n", result.folder.c_str());
+  return static_cast<int>(result.code);
+}
+
+}  // namespace st
