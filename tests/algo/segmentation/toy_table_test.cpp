@@ -21,7 +21,7 @@ TEST(ToyTable, WhatIsTakenHoldOfIsReleasedAndTheTableIsNot) {
   segmenter.configure(c);
   int squirrel_at = -1, lump_at = -1;
   for (int i = 0; i < 100; ++i) {
-    char name[32];
+    char name[48];
     std::snprintf(name, sizeof name, "/toy-table/depth/%06d.png", i);
     const auto depth = test::read_depth_png(test::data_folder() + name, 320, 240);
     if (depth.empty()) {
