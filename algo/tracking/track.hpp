@@ -32,6 +32,9 @@ struct Bounds {
       if (p[i] > high[i]) high[i] = p[i];
     }
   }
+  bool contains(const Vec3& p) const {
+    return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+  }
   Vec3 centre() const { return (low + high) * 0.5; }
   Vec3 size() const { return high - low; }
 };
@@ -55,6 +58,7 @@ struct Track {
   bool left_view = false;  // went out through the edge of the image
   bool from_background = false;
   int owned_pixels = 0;  // in the last frame in which it had any
+  int divided_run = 0;   // frames in a row in which something hung together with it
   int cut_balance =
       0;  // frames in which the edge of the view may have cut it, less those in which it did not
   Volume volume;
@@ -76,8 +80,9 @@ struct Track {
   int lost_run = 0;        // frames in a row in which it was lost
   int published_gap = 0;   // predicted rows in a row
   double last_good_t_s = 0;
-  double yaw_unwrapped = 0;  // as published, floor frame
-  double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
+  float usual_color_sigma = 0;  // of the colour residuals, slowly averaged, grey levels; 0: no colour yet
+  double yaw_unwrapped = 0;     // as published, floor frame
+  double covariance[36]{};      // of T_camera_object, newest good alignment; camera axes
 
   bool planar = true;     // rests on the floor: floor prior applies
   int off_floor_run = 0;  // frames in a row that contradict it
