@@ -51,8 +51,10 @@ void ObjectTracker::bind_views(Bump& memory) {
   for (Track& track : tracks_) track.rendered.maps.bind(memory, width, height);
   raycast_scratch_.bind(memory, width, height);
   scratch_.bind(memory, width, height);
-  if (config_.tracker != TrackerKind::kFrameToFrame) return;
-  for (FrameViewMemory& previous : previous_) previous.bind(memory, width, height);
+  if (config_.tracker == TrackerKind::kFrameToFrame)
+    for (FrameViewMemory& previous : previous_) previous.bind(memory, width, height);
+  if (config_.tracker == TrackerKind::kListing1)
+    for (ModelCloud& cloud : clouds_) cloud.bind(memory);
 }
 
 void ObjectTracker::bind_points(Bump& memory) {
@@ -158,7 +160,8 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
   AlignInput in = alignment_of(track, k);
   in.terms.color = in.terms.color && step.color_term;
   in.point_stride = step.point_stride;
-  track.aligned = align(in, scratch_);
+  track.aligned = config_.tracker == TrackerKind::kListing1 ? align_closest_point(in, clouds_[k], scratch_)
+                                                            : align(in, scratch_);
 }
 
 // Collects the track's pixels and gives them their colours, as they were when the depth was taken.
@@ -200,6 +203,7 @@ void ObjectTracker::fuse_at_rest(Track& track, const Rect& box) {
 
 void ObjectTracker::note_integrated(Track& track, const IntegrateStats& stats) {
   ++track.integrated;
+  if (config_.tracker == TrackerKind::kListing1) clouds_[&track - tracks_].take(track.volume);
   if (stats.low.x <= stats.high.x) {
     track.bounds.include(to_double(stats.low));
     track.bounds.include(to_double(stats.high));
