@@ -263,12 +263,7 @@ void ObjectTracker::judge_one(Track& track) {
   ++track.good_poses;
   track.last_good_t_s = frame_.input->t_s;
   if (norm(track.T_camera_object.t - track.birth_position) > 0.008) track.has_moved = true;
-  const double yaw_all = turn_sigma_rad(track.aligned.data_information, support_.up);
-  const double yaw_shape = turn_sigma_rad(track.aligned.shape_information, support_.up);
-  constexpr double kSeen_rad = 0.035;  // 2 degrees, one sigma
-  track.yaw_source = yaw_all > kSeen_rad                                          ? YawSource::kNone
-                     : track.aligned.color.used > 50 && yaw_all < 0.7 * yaw_shape ? YawSource::kColor
-                                                                                  : YawSource::kDepth;
+  track.yaw_source = yaw_source_of(track.aligned, support_.up);
 }
 
 void ObjectTracker::judge_all() {

@@ -28,6 +28,9 @@ enum class Verdict { kGood, kPoor, kLost };
 // The rule, in one place. `shift_sigmas`: how far the pose moved from the prediction, in its own sigmas.
 Verdict judge(const AlignResult& result, const Agreement& agreement);
 
+// What the turn about `up` (camera frame, unit) was read from; none when the data leave it open.
+YawSource yaw_source_of(const AlignResult& result, const Vec3& up);
+
 // Share of the model that must be in sight for the frame to say anything.
 inline constexpr float kLeastInSight = 0.25f;
 
