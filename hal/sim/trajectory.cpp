@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/core/scalar_math.hpp"
+
 namespace st::sim {
 namespace {
 
@@ -33,7 +35,9 @@ Pose2 Trajectory::at(double t_s) const {
   const auto i = std::min(static_cast<std::size_t>(at), poses_.size() - 2);
   const double f = at - static_cast<double>(i);
   const Pose2 &a = poses_[i], &b = poses_[i + 1];
-  return {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.yaw + (b.yaw - a.yaw) * f};
+  // Headings are kept in (-pi, pi]: between one at the end of that range and the next at its beginning lies
+  // no turn round.
+  return {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.yaw + wrap_angle(b.yaw - a.yaw) * f};
 }
 
 std::vector<PresetSample> ideal_path(const std::vector<DriveCommand>& commands) {
