@@ -246,7 +246,9 @@ void ObjectTracker::mark_planar(Track& track) {
 void ObjectTracker::judge_one(Track& track) {
   const Pose D = track.aligned.T_camera_object * track.view.T_camera_object.inverse();
   track.agreement = compare(track.view, frame_.camera, frame_.depth_z, D, track.aligned.depth);
-  track.verdict = judge(track.aligned, track.agreement);
+  track.verdict = judge(track.aligned, track.agreement, track.habit);
+  if (judge(track.aligned, track.agreement) == Verdict::kGood)
+    track.habit.learn(track.aligned, track.agreement);
   if (track.verdict != Verdict::kGood) {
     track.state = track.verdict == Verdict::kPoor ? TrackState::kPoor : TrackState::kLost;
     ++track.poor_run;

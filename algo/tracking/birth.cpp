@@ -69,6 +69,7 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.good_poses = track.poor_run = track.integrated = track.still_run = track.published_gap = 0;
   track.last_good_t_s = t_s;
   track.sides = SeenSides{};
+  track.habit = Habit{};
   track.planar = footprint.on_floor;
   track.off_floor_run = 0;
   track.view_pixels = 0;

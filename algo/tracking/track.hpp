@@ -83,6 +83,7 @@ struct Track {
   AlignResult aligned;
   Agreement agreement;
   Verdict verdict = Verdict::kLost;
+  Habit habit;
   YawSource yaw_source = YawSource::kNone;
 
   bool active() const { return phase == Phase::kCandidate || phase == Phase::kTracked; }

@@ -62,7 +62,7 @@ class Jumps {
         after.t += Vec3{to.cos, to.sin, 0} * jump_m;
         after.R = before.R * rotation_z(k % 2 == 0 ? jump_rad : -jump_rad);
         const RobotFrame frame = views_.look(after);
-        for (std::size_t i = 0; i < kKinds; ++i) try_one(kAligners[i], frame, scores[i]);
+        for (std::size_t i = 0; i < kKinds; ++i) try_one(kAligners[i], frame, habits_[i], &scores[i]);
       }
     }
   }
@@ -98,9 +98,17 @@ class Jumps {
       motion_.predict(i * kPeriod_s, MotionNoise{});
       if (i < 30) motion_.correct(start_, covariance);
     }
+    for (int i = 0; i < 16; ++i) {
+      const RobotFrame again = views_.look(T_room_robot);
+      for (std::size_t k = 0; k < kKinds; ++k) {
+        if (i == 0) habits_[k] = Habit{};
+        try_one(kAligners[k], again, habits_[k], nullptr);
+      }
+    }
   }
 
-  void try_one(const Aligner& aligner, const RobotFrame& frame, Score& score) {
+  // Without a score: a frame of the time in which it stood, from which the habit of its track comes.
+  void try_one(const Aligner& aligner, const RobotFrame& frame, Habit& habit, Score* score) {
     constexpr double kSettledTrack_m = 0.02;  // what the loop allows a track whose motion is known
     AlignInput in;
     in.points = frame.points;
@@ -119,8 +127,12 @@ class Jumps {
         aligner.kind == Aligner::kCloud ? align_closest_point(in, cloud_, aligning_) : align(in, aligning_);
     const Pose D = result.T_camera_object * in.view.T_camera_object.inverse();
     const Agreement agreement = compare(in.view, in.camera, in.depth_z, D, result.depth);
-    score.count(result, judge(result, agreement), yaw_source_of(result, views_.support().up),
-                frame.T_camera_robot);
+    if (score == nullptr) {
+      habit.learn(result, agreement);
+      return;
+    }
+    score->count(result, judge(result, agreement, habit), yaw_source_of(result, views_.support().up),
+                 frame.T_camera_robot);
   }
 
   RobotViews views_;
@@ -142,6 +154,7 @@ class Jumps {
   }};
   MotionFilter motion_;
   Pose start_;
+  Habit habits_[kKinds];
 };
 
 void print_header(const char* what) {
