@@ -45,6 +45,18 @@ TEST(Trackers, EveryOneFollowsTheRobotInItsOwnWay) {
   }
 }
 
+// The paper's section 4.2: what frame to frame gets wrong it keeps, the updated model brings back.
+TEST(Trackers, FrameToFrameDriftsAwayFromWhatTheModelHolds) {
+  const auto end_error_mm = [this](const std::string& name) {
+    const Said said =
+        startrack({"evaluate", folder / name, "--truth", driven_circle() + "/truth.tum", "--json"});
+    return nlohmann::json::parse(said.out)["first_b"]["final"]["trans_mm"].get<double>();
+  };
+  replay("model", {});
+  replay("frame", {"--tracker", "frame-to-frame"});
+  CHECK(end_error_mm("frame") > 2 * end_error_mm("model"));
+}
+
 TEST(Trackers, Listing1GivesTheSameBytesTwiceAndKeepsOffTheHeap) {
   const nlohmann::json first = replay("first", {"--tracker", "listing1"}),
                        again = replay("again", {"--tracker", "listing1"});

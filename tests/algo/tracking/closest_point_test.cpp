@@ -164,6 +164,31 @@ TEST(ClosestPoint, FindsAFrameInTheModelAndSaysWhatTheJudgeAsks) {
   for (int i = 0; i < 6; ++i) CHECK(found.covariance[7 * i] > 0 && found.covariance[7 * i] < 1e-3);
 }
 
+// Projective association and closest points are two ways to the same pose where both find it.
+TEST(ClosestPoint, AgreesWithProjectiveIcpOnSmallMotions) {
+  const Box box({0.16, 0.12, 0.07});
+  learn(box);
+  const Pose start = looking_at(1.3, 0.5, 0.6);
+  raycast(bench.volume, kCamera, {0, 0, kCamera.width, kCamera.height}, start, bench.raycasting, bench.maps);
+  const Twist moves[] = {
+      {{0.01, 0, 0}, {}}, {{0, -0.008, 0.01}, {0, 0, 0.03}}, {{-0.006, 0.006, 0}, {0.02, -0.03, 0}}};
+  for (const Twist& move : moves) {
+    View frame;
+    AlignInput in;
+    in.points = seen(box, moved_about(start, move, start.t), frame);
+    in.view = {bench.maps, start};
+    in.depth_z = {frame.depth.data(), kCamera.width, kCamera.height};
+    in.camera = kCamera;
+    in.start = in.prior.mean = start;
+    in.pivot = start.t;
+    in.terms = {false, false, false, false};
+    const AlignResult closest = align_closest_point(in, model, scratch), projective = align(in, scratch);
+    CHECK(closest.solved && projective.solved);
+    DOUBLES_EQUAL(0, distance_m(closest.T_camera_object, projective.T_camera_object), 0.004);
+    DOUBLES_EQUAL(0, turn_rad(closest.T_camera_object, projective.T_camera_object), 1.0 * kDegree);
+  }
+}
+
 TEST(ClosestPoint, AnEmptyModelSolvesNothing) {
   View frame;
   AlignInput in;
