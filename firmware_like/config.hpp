@@ -6,7 +6,7 @@
 
 namespace st {
 
-enum class TrackerKind { kStar, kFrameToFrame };
+enum class TrackerKind { kStar, kFrameToFrame, kListing1 };
 
 struct LoopConfig {
   TrackerKind tracker = TrackerKind::kStar;

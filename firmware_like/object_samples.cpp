@@ -74,6 +74,10 @@ void ObjectTracker::publish(FrameReport& report) {
     ObjectCount& count = counts_[static_cast<std::size_t>(track.id - 1)];
     if (sample.in_tum) count.last_t_s = report.t_s, ++count.tracked;
     if (!sample.in_tum && sample.in_view) ++count.lost;
+    if (track.active() && track.aligned.iterations > 0) {
+      ++count.aligned;
+      count.iterations += static_cast<std::uint64_t>(track.aligned.iterations);
+    }
     count.good_at_end = sample.state == TrackState::kGood;
     count.left_view = !sample.in_view;
   }

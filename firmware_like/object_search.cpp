@@ -62,7 +62,7 @@ void ObjectTracker::refine(Search::Found& found, const Pose& T_camera_anchor) {
     if (!(score > 0)) return;
     pose = track.aligned.T_camera_object;
   }
-  if (!is_found(track.aligned, track.agreement, track.usual_color_sigma)) return;
+  if (!is_found(track.aligned, track.agreement, track.habit)) return;
   found = {score, T_camera_anchor.inverse() * pose};
 }
 

@@ -53,8 +53,10 @@ void ObjectTracker::bind_views(Bump& memory) {
   for (Track& track : tracks_) track.rendered.maps.bind(memory, width, height);
   raycast_scratch_.bind(memory, width, height);
   scratch_.bind(memory, width, height);
-  if (config_.tracker != TrackerKind::kFrameToFrame) return;
-  for (FrameViewMemory& previous : previous_) previous.bind(memory, width, height);
+  if (config_.tracker == TrackerKind::kFrameToFrame)
+    for (FrameViewMemory& previous : previous_) previous.bind(memory, width, height);
+  if (config_.tracker == TrackerKind::kListing1)
+    for (ModelCloud& cloud : clouds_) cloud.bind(memory);
 }
 
 void ObjectTracker::bind_points(Bump& memory) {
@@ -166,6 +168,10 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
   AlignInput in = alignment_of(track, k);
   in.terms.color = in.terms.color && step.color_term;
   in.point_stride = step.point_stride;
+  if (config_.tracker == TrackerKind::kListing1) {
+    track.aligned = align_closest_point(in, clouds_[k], scratch_);
+    return;
+  }
   track.aligned = align(in, scratch_);
   if (in.floor.on && step.point_stride == 1) leave_floor(track, in);
 }
@@ -229,6 +235,7 @@ void ObjectTracker::fuse_at_rest(Track& track, const Rect& box) {
 
 void ObjectTracker::note_integrated(Track& track, const IntegrateStats& stats) {
   ++track.integrated;
+  if (config_.tracker == TrackerKind::kListing1) clouds_[&track - tracks_].take(track.volume);
   if (stats.low.x <= stats.high.x) {
     track.bounds.include(to_double(stats.low));
     track.bounds.include(to_double(stats.high));
@@ -253,7 +260,9 @@ void ObjectTracker::align_all(const LadderStep& step) {
 void ObjectTracker::judge_one(Track& track) {
   const Pose D = track.aligned.T_camera_object * track.view.T_camera_object.inverse();
   track.agreement = compare(track.view, frame_.camera, frame_.depth_z, D, track.aligned.depth);
-  track.verdict = judge(track.aligned, track.agreement);
+  track.verdict = judge(track.aligned, track.agreement, track.habit);
+  if (judge(track.aligned, track.agreement) == Verdict::kGood)
+    track.habit.learn(track.aligned, track.agreement);
   if (track.verdict != Verdict::kGood) {
     track.state = track.verdict == Verdict::kPoor ? TrackState::kPoor : TrackState::kLost;
     ++track.poor_run;
@@ -270,16 +279,8 @@ void ObjectTracker::judge_one(Track& track) {
   ++track.good_poses;
   track.last_good_t_s = frame_.input->t_s;
   track.T_last_good = track.T_camera_object;
-  if (const float sigma = track.aligned.color.sigma; sigma > 0)
-    track.usual_color_sigma +=
-        (track.usual_color_sigma > 0 ? 0.05f : 1.0f) * (sigma - track.usual_color_sigma);
   if (norm(track.T_camera_object.t - track.birth_position) > 0.008) track.has_moved = true;
-  const double yaw_all = turn_sigma_rad(track.aligned.data_information, support_.up);
-  const double yaw_shape = turn_sigma_rad(track.aligned.shape_information, support_.up);
-  constexpr double kSeen_rad = 0.035;  // 2 degrees, one sigma
-  track.yaw_source = yaw_all > kSeen_rad                                          ? YawSource::kNone
-                     : track.aligned.color.used > 50 && yaw_all < 0.7 * yaw_shape ? YawSource::kColor
-                                                                                  : YawSource::kDepth;
+  track.yaw_source = yaw_source_of(track.aligned, support_.up);
 }
 
 void ObjectTracker::judge_all() {

@@ -5,6 +5,7 @@
 #include "algo/core/bump.hpp"
 #include "algo/segmentation/segmenter.hpp"
 #include "algo/tracking/associate.hpp"
+#include "algo/tracking/closest_point.hpp"
 #include "algo/tracking/frame_view.hpp"
 #include "algo/tracking/make_room.hpp"
 #include "algo/tracking/recover.hpp"
@@ -22,6 +23,7 @@ struct ObjectCount {
   int id = 0;
   double first_t_s = 0, last_t_s = 0;  // first and last published pose
   std::uint64_t tracked = 0, lost = 0;
+  std::uint64_t aligned = 0, iterations = 0;  // frames with an alignment, and what those took together
   bool good_at_end = false, left_view = false;
 };
 using ObjectCounts = FixedVector<ObjectCount, 64>;
@@ -137,6 +139,7 @@ class ObjectTracker {
   RaycastScratch raycast_scratch_;
   AlignScratch scratch_;
   FrameViewMemory previous_[kMaxObjects];  // frame-to-frame mode: the view of the frame before
+  ModelCloud clouds_[kMaxObjects];         // listing1 mode: the models as points
   ImageView<float> rest_z_;
   ImageView<std::uint32_t> registered_color_;  // of the objects' pixels, pack_rgb
   IntegrateScratch integrate_scratch_;

@@ -193,6 +193,8 @@ SessionResult run_session(const SessionOptions& options) {
     object.last_t_s = count.last_t_s;
     object.tracked = count.tracked;
     object.lost = count.lost;
+    if (count.aligned > 0)
+      object.iterations_mean = static_cast<double>(count.iterations) / static_cast<double>(count.aligned);
     object.good_at_end = count.good_at_end;
     object.left_view = count.left_view;
     for (const Track& track : tracker.tracks())

@@ -69,8 +69,8 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.owned_pixels = track.divided_run = track.cut_balance = track.double_run = track.lost_run = 0;
   track.good_poses = track.poor_run = track.integrated = track.still_run = track.published_gap = 0;
   track.last_good_t_s = t_s;
-  track.usual_color_sigma = 0;
   track.sides = SeenSides{};
+  track.habit = Habit{};
   track.planar = footprint.on_floor;
   track.off_floor_run = track.on_floor_run = 0;
   track.view_pixels = 0;

@@ -38,13 +38,66 @@ Agreement compare(const ModelView& view, const Pinhole& camera, ImageView<const 
   return a;
 }
 
+namespace {
+
+// Of the model's pixels that the frame says anything about, the share that it shows where they should be.
+float agreeing(const Agreement& a) {
+  const float seen = a.same + a.through;
+  return seen > 0 ? a.same / seen : 0.0f;
+}
+
+// A part of what was modelled is not there any more, an arm that had carried the object, and the rest fits as
+// well as ever: the pose is good, and the model has to change.
+bool part_is_gone(const Agreement& a) { return a.explained > 0.9f && agreeing(a) > 0.3f; }
+
+constexpr int kHabitFrames = 15;  // before it counts
+constexpr float kHabitPace = 0.05f;
+constexpr float kHabitAgree = 0.85f;  // of what is usual: least agreement
+// Largest spread of the colour residuals, grey levels: where nothing is wrong it stays near what is usual,
+// and a pose a few degrees off doubles it.
+constexpr float kHabitColorTimes = 2.0f, kHabitColorMore = 1.0f;
+
+void learn_one(float value, int& frames, float& habit) {
+  habit = frames++ == 0 ? value : habit + kHabitPace * (value - habit);
+}
+
+}  // namespace
+
+bool Habit::broken_by_color(const AlignResult& result) const {
+  return colored_frames_ >= kHabitFrames &&
+         result.color.sigma > kHabitColorTimes * color_sigma_ + kHabitColorMore;
+}
+
+bool Habit::broken_by(const AlignResult& result, const Agreement& a) const {
+  if (broken_by_color(result)) return true;
+  return frames_ >= kHabitFrames && agreeing(a) < kHabitAgree * agree_ && !part_is_gone(a);
+}
+
+void Habit::learn(const AlignResult& result, const Agreement& a) {
+  learn_one(agreeing(a), frames_, agree_);
+  if (result.color.used > 0) learn_one(result.color.sigma, colored_frames_, color_sigma_);
+}
+
+Verdict judge(const AlignResult& result, const Agreement& a, const Habit& habit) {
+  const Verdict verdict = judge(result, a);
+  return verdict == Verdict::kGood && habit.broken_by(result, a) ? Verdict::kPoor : verdict;
+}
+
 Verdict judge(const AlignResult& result, const Agreement& a) {
   if (!result.solved || a.model_pixels < 20 || result.depth.inliers < 30) return Verdict::kLost;
-  const float seen = a.same + a.through;
-  const float agree = seen > 0 ? a.same / seen : 0.0f;
-  if (a.same + a.through < kLeastInSight || agree < 0.35f) return Verdict::kLost;
-  if (agree < 0.65f || a.explained < 0.35f) return Verdict::kPoor;
+  const float agree = agreeing(a);
+  if (a.same + a.through < kLeastInSight || agree < 0.3f) return Verdict::kLost;
+  if ((agree < 0.65f && !part_is_gone(a)) || a.explained < 0.35f) return Verdict::kPoor;
   return Verdict::kGood;
+}
+
+YawSource yaw_source_of(const AlignResult& result, const Vec3& up) {
+  constexpr double kSeen_rad = 0.035;  // 2 degrees, one sigma
+  constexpr int kLeastColored = 50;
+  const double all = turn_sigma_rad(result.data_information, up);
+  if (all > kSeen_rad) return YawSource::kNone;
+  const double shape = turn_sigma_rad(result.shape_information, up);
+  return result.color.used > kLeastColored && all < 0.7 * shape ? YawSource::kColor : YawSource::kDepth;
 }
 
 }  // namespace st

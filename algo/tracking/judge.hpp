@@ -25,8 +25,28 @@ Agreement compare(const ModelView& view, const Pinhole& camera, ImageView<const 
 
 enum class Verdict { kGood, kPoor, kLost };
 
-// The rule, in one place. `shift_sigmas`: how far the pose moved from the prediction, in its own sigmas.
+// How well a track's good poses agree with their frames as a rule. After a jump the alignment may settle
+// beside the object, or turned against it, in a pose that would pass for another object's; what falls far
+// behind its own track's habit is not believed.
+class Habit {
+ public:
+  bool broken_by(const AlignResult& result, const Agreement& agreement) const;
+  bool broken_by_color(const AlignResult& result) const;
+  // Also from poses that broke it: what stays different (the lamps went out, a cloth lies on it) becomes the
+  // habit before the track would be given up.
+  void learn(const AlignResult& result, const Agreement& agreement);
+
+ private:
+  float agree_ = 0, color_sigma_ = 0;
+  int frames_ = 0, colored_frames_ = 0;
+};
+
+// The rule, in one place: for any pose, and for one of a track that has its habit.
 Verdict judge(const AlignResult& result, const Agreement& agreement);
+Verdict judge(const AlignResult& result, const Agreement& agreement, const Habit& habit);
+
+// What the turn about `up` (camera frame, unit) was read from; none when the data leave it open.
+YawSource yaw_source_of(const AlignResult& result, const Vec3& up);
 
 // Share of the model that must be in sight for the frame to say anything.
 inline constexpr float kLeastInSight = 0.25f;

@@ -66,13 +66,10 @@ double fit_score(const AlignResult& result, const Agreement& a) {
   return a.same * a.explained * (0.5 + 0.5 * color);
 }
 
-bool is_found(const AlignResult& result, const Agreement& a, float usual_color_sigma) {
+bool is_found(const AlignResult& result, const Agreement& a, const Habit& habit) {
   constexpr float kExplained = 0.75f, kMostLookedThrough = 0.15f;
-  constexpr int kColored = 100;  // points
-  if (judge(result, a) != Verdict::kGood || a.explained < kExplained) return false;
-  if (a.through > kMostLookedThrough * (a.same + a.through)) return false;
-  const bool has_color = result.color.used > kColored && usual_color_sigma > 0;
-  return !has_color || result.color.sigma < 2.0f * usual_color_sigma + 2.0f;
+  return judge(result, a) == Verdict::kGood && a.explained >= kExplained &&
+         a.through <= kMostLookedThrough * (a.same + a.through) && !habit.broken_by_color(result);
 }
 
 }  // namespace st

@@ -51,8 +51,7 @@ Pose turned_in_place(const Track& track, const Support& support, double yaw_rad)
 double fit_score(const AlignResult& result, const Agreement& agreement);
 
 // Whether a pose found by searching is the object's beyond doubt. Stricter than judge(), which knows that the
-// object was nearly there a frame ago. usual_color_sigma: of the residuals while it was tracked, grey levels;
-// 0: none.
-bool is_found(const AlignResult& result, const Agreement& agreement, float usual_color_sigma);
+// object was nearly there a frame ago.
+bool is_found(const AlignResult& result, const Agreement& agreement, const Habit& habit);
 
 }  // namespace st

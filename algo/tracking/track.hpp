@@ -80,9 +80,8 @@ struct Track {
   int lost_run = 0;        // frames in a row in which it was lost
   int published_gap = 0;   // predicted rows in a row
   double last_good_t_s = 0;
-  float usual_color_sigma = 0;  // of the colour residuals, slowly averaged, grey levels; 0: no colour yet
-  double yaw_unwrapped = 0;     // as published, floor frame
-  double covariance[36]{};      // of T_camera_object, newest good alignment; camera axes
+  double yaw_unwrapped = 0;  // as published, floor frame
+  double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
 
   bool planar = true;     // rests on the floor: floor prior applies
   int off_floor_run = 0;  // frames in a row that contradict it
@@ -95,6 +94,7 @@ struct Track {
   AlignResult aligned;
   Agreement agreement;
   Verdict verdict = Verdict::kLost;
+  Habit habit;
   YawSource yaw_source = YawSource::kNone;
 
   // What is seen may be a part of something larger. A whole thing that an arm takes hold of stays whole.

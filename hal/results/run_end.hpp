@@ -18,6 +18,7 @@ struct ObjectEnd {
   std::string model_id;
   double first_t_s = 0, last_t_s = 0;   // first and last row of its .tum
   std::uint64_t tracked = 0, lost = 0;  // as the contract counts them
+  double iterations_mean = 0;           // of the alignment, over the frames that had one
   bool good_at_end = false;
   bool left_view = false;
   Pose T_model_object{};

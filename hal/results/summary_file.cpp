@@ -42,6 +42,7 @@ Json object_json(const ObjectEnd& object, const ObjectAnalysis* learned) {
           {"last_t", object.last_t_s},
           {"tracked", object.tracked},
           {"lost", object.lost},
+          {"iterations_mean", object.iterations_mean},
           {"path_length_m", learned != nullptr ? learned->path_length_m : 0.0},
           {"T_model_object", matrix(object.T_model_object)},
           {"base", base}};

@@ -33,20 +33,27 @@ void leave_out(LoopConfig& config, const std::string& name) {
 void add_session_options(CLI::App& command, SessionOptions& options) {
   command.add_option("--path", options.path_file, "the preset path: TOML program or CSV way points")
       ->type_name("FILE");
-  command.add_option_function<std::string>(
-      "--tracker",
-      [&options](const std::string& name) {
-        if (name == "star") {
-          options.loop.tracker = TrackerKind::kStar;
-        } else if (name == "frame-to-frame") {
-          options.loop.tracker = TrackerKind::kFrameToFrame;
-        } else {
-          throw Failure(ExitCode::kBadInput,
-                        "--tracker " + name + ": no such tracker; there are star, frame-to-frame");
-        }
-        options.tracker_name = name;
-      },
-      "star (frame to updated model) or frame-to-frame (the paper's first approach)");
+  command
+      .add_option_function<std::string>(
+          "--tracker",
+          [&options](const std::string& name) {
+            if (name == "star") {
+              options.loop.tracker = TrackerKind::kStar;
+            } else if (name == "frame-to-frame") {
+              options.loop.tracker = TrackerKind::kFrameToFrame;
+            } else if (name == "listing1") {
+              options.loop.tracker = TrackerKind::kListing1;
+            } else {
+              throw Failure(
+                  ExitCode::kBadInput,
+                  "--tracker " + name + ": no such tracker; there are star, listing1, frame-to-frame");
+            }
+            options.tracker_name = name;
+          },
+          "star (frame to updated model, all terms), listing1 (the paper as printed: closest-point ICP "
+          "against the "
+          "updated model, no other term) or frame-to-frame (its first approach)")
+      ->type_name("NAME");
   command
       .add_option(
           "--keyframes", options.loop.keyframe_every,
@@ -58,7 +65,10 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
           [&options](const std::vector<std::string>& names) {
             for (const std::string& name : names) leave_out(options.loop, name);
           },
-          "leave pose terms out: edges, colour, floor, motion")
+          "leave pose terms out: edges (outline and free space), colour (the model's print), floor (height "
+          "and "
+          "upright of what rests on it), motion (the predicted pose as a prior); all four leave projective "
+          "ICP alone")
       ->delimiter(',')
       ->type_name("TERM[,TERM]");
   command

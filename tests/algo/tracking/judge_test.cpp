@@ -70,7 +70,15 @@ TEST(Judge, AModelThatIsLookedThroughIsNotThere) {
 TEST(Judge, HalfAndHalfIsPoor) {
   agreement.same = 0.5f;
   agreement.through = 0.45f;
+  agreement.explained = 0.7f;
   check(Verdict::kPoor);
+}
+
+TEST(Judge, AnArmThatLetsGoLeavesAGoodPose) {
+  agreement.same = 0.4f;
+  agreement.through = 0.55f;
+  agreement.explained = 0.95f;
+  check(Verdict::kGood);
 }
 
 TEST(Judge, PointsThatTheModelDoesNotExplainMakeItPoor) {
@@ -90,4 +98,43 @@ TEST(Judge, ButSomeOfItMustBeInSight) {
   agreement.through = 0;
   agreement.hidden = 0.85f;
   check(Verdict::kLost);
+}
+
+TEST(Judge, AfterAWhileATrackIsHeldToItsHabit) {
+  Agreement worse = agreement;
+  worse.same = 0.68f, worse.through = 0.22f;  // would do for an object that is seen like that as a rule
+  Habit habit;
+  result.color.used = 500;
+  result.color.sigma = 5;
+  for (int i = 0; i < 14; ++i) habit.learn(result, agreement);
+  CHECK(judge(result, worse, habit) == Verdict::kGood);
+  habit.learn(result, agreement);
+  CHECK(judge(result, agreement, habit) == Verdict::kGood);
+  CHECK(judge(result, worse) == Verdict::kGood);
+  CHECK(judge(result, worse, habit) == Verdict::kPoor);
+  result.color.sigma = 10;
+  CHECK(judge(result, agreement, habit) == Verdict::kGood);
+  result.color.sigma = 12;  // the print is not where it should be
+  CHECK(judge(result, agreement, habit) == Verdict::kPoor);
+}
+
+TEST(Judge, WhatStaysDifferentBecomesTheHabitBeforeATrackIsGivenUp) {
+  constexpr int kTrackGivesUp = 8;  // frames without a good pose
+  Habit habit;
+  result.color.used = 500;
+  result.color.sigma = 5;
+  for (int i = 0; i < 30; ++i) habit.learn(result, agreement);
+  result.color.sigma = 14;  // another light
+  int poor = 0;
+  for (; judge(result, agreement, habit) == Verdict::kPoor && poor < 100; ++poor)
+    habit.learn(result, agreement);
+  CHECK(poor > 0 && poor < kTrackGivesUp);
+}
+
+TEST(Judge, WithoutColourTheHabitSaysNothingOfIt) {
+  Habit habit;
+  for (int i = 0; i < 30; ++i) habit.learn(result, agreement);
+  result.color.used = 500;
+  result.color.sigma = 30;
+  CHECK(judge(result, agreement, habit) == Verdict::kGood);
 }

@@ -93,8 +93,11 @@ TEST(ResultWriter, SummaryHoldsEveryKeyInTheOrderOfTheContract) {
       "deadline_misses "
       "deterministic_hash ",
       keys(json).c_str());
-  STRCMP_EQUAL("id name model_source model_id first_t last_t tracked lost path_length_m T_model_object base ",
-               keys(json["objects"][0]).c_str());
+  STRCMP_EQUAL(
+      "id name model_source model_id first_t last_t tracked lost iterations_mean path_length_m "
+      "T_model_object "
+      "base ",
+      keys(json["objects"][0]).c_str());
   STRCMP_EQUAL("x y yaw sigma_m sigma_rad ", keys(json["objects"][0]["base"]).c_str());
   STRCMP_EQUAL("rmse_as_placed_m rmse_shape_m max_m heading_rmse_rad in_band radius_m ",
                keys(json["path"]).c_str());
