@@ -8,7 +8,7 @@
 namespace st {
 namespace {
 
-constexpr int kYawsPerFrame = 3;
+constexpr int kYawsPerFrame = 6;
 constexpr double kHeldTurn_rad = 0.002;
 constexpr int kSearchPatience = 5;
 constexpr int kInPlaceFrames = 90;  // for so long a lost object is expected where it was
