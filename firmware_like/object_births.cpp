@@ -124,7 +124,29 @@ bool ObjectTracker::is_looked_for_in(const Unexplained& what) const {
   return false;
 }
 
+// Ragged things (the legs of a chair) and limbs begin tracks that come to nothing; the next from the same
+// place has to wait, or they would take turns for ever.
+void ObjectTracker::mark_barren(const Track& track) {
+  constexpr int kWait = 90;  // frames
+  if (barren_.full()) barren_.erase(0);
+  barren_.push_back({image_box(track.bounds, track.T_camera_object, frame_.camera, 0), kWait});
+}
+
+bool ObjectTracker::is_barren(const Unexplained& what) const {
+  for (const Barren& place : barren_)
+    if (overlap(place.box, what.box) &&
+        4 * what.box.width() * what.box.height() < 9 * place.box.width() * place.box.height())
+      return true;
+  return false;
+}
+
 void ObjectTracker::begin_tracks() {
+  for (std::size_t i = 0; i < barren_.size();) {
+    if (--barren_[i].frames_left > 0)
+      ++i;
+    else
+      barren_.erase(i);
+  }
   for (Newcomer& newcomer : newcomers_) newcomer.seen = false;
   for (const Unexplained& what : unexplained_) {
     const double px_m = what.centroid.z / frame_.camera.fx;
@@ -136,7 +158,7 @@ void ObjectTracker::begin_tracks() {
     }
     known->box = what.box;
     known->seen = true;
-    if (!is_looked_for_in(what) && ++known->frames >= kNewcomerFrames) {
+    if (!is_looked_for_in(what) && !is_barren(what) && ++known->frames >= kNewcomerFrames) {
       begin_from_pixels(what);
       known->seen = false;
     }

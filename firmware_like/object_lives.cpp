@@ -42,6 +42,7 @@ void ObjectTracker::confirm(Track& track) {
 
 void ObjectTracker::lose(Track& track) {
   if (track.phase == Track::Phase::kCandidate) {
+    mark_barren(track);
     track.phase = Track::Phase::kFree;
     return;
   }
@@ -62,6 +63,7 @@ std::size_t ObjectTracker::make_room(Newness newness) {
 void ObjectTracker::evict(Track& track) {
   if (track.id > 0) log(EventKind::kEvicted, track.id);
   if (search_.running && &tracks_[search_.track] == &track) search_.running = false;
+  if (track.active()) mark_barren(track);
   track.phase = Track::Phase::kFree;
 }
 

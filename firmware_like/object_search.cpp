@@ -62,7 +62,11 @@ void ObjectTracker::refine(Search::Found& found, const Pose& T_camera_anchor) {
     if (!(score > 0)) return;
     pose = track.aligned.T_camera_object;
   }
-  if (!is_found(track.aligned, track.agreement, track.habit)) return;
+  // In place it was nearly there a moment ago; elsewhere it has to be the object beyond doubt.
+  const bool found_again = search_.where == Search::Where::kInPlace
+                               ? judge(track.aligned, track.agreement, track.habit) == Verdict::kGood
+                               : is_found(track.aligned, track.agreement, track.habit);
+  if (!found_again) return;
   found = {score, T_camera_anchor.inverse() * pose};
 }
 
@@ -119,8 +123,9 @@ bool ObjectTracker::start_search_in(const Unexplained& what, std::size_t k) {
 
 // Whether a candidate may be a lost object, of which only a part had come into sight when it began.
 bool ObjectTracker::may_be_lost_one(const Track& candidate, const Track& lost) const {
-  return candidate.phase == Track::Phase::kCandidate && lost.phase == Track::Phase::kLost && !lost.cut() &&
-         lost.lost_run < kMissedFrames && candidate.good_poses < kRivalFrames &&
+  return candidate.phase == Track::Phase::kCandidate && !candidate.from_background &&
+         lost.phase == Track::Phase::kLost && !lost.cut() && lost.lost_run < kMissedFrames &&
+         candidate.good_poses < kRivalFrames &&
          norm(candidate.bounds.size()) < 1.4 * norm(lost.bounds.size());
 }
 

@@ -152,6 +152,13 @@ class ObjectTracker {
     bool seen = false;
   };
   Newcomer* newcomer_at(const Rect& box);
+  struct Barren {  // where a track came to nothing lately
+    Rect box;
+    int frames_left = 0;
+  };
+  void mark_barren(const Track& track);
+  bool is_barren(const Unexplained& what) const;
+  FixedVector<Barren, 12> barren_;
   FixedVector<Newcomer, 8> newcomers_;
   FixedVector<Event, 16> events_;
   ObjectCounts counts_;

@@ -8,6 +8,7 @@ namespace {
 constexpr int kMaxLabels = 64;
 constexpr int kLeastOverlap_px = 25;
 constexpr int kLeastRest_px = 250;
+constexpr int kReachShare = 40;  // of the image's width, beside the model: where it may have moved in a frame
 constexpr int kMatureFrames = 10;    // younger models may grow at any pace
 constexpr int kDoubtfulFrames = 10;  // for so long, what a whole segment gained may be something else
 
@@ -53,24 +54,27 @@ Claims claim(const AssociationInput& in, std::span<const Track> tracks) {
   return claims;
 }
 
-// Depth of the track's model at the pixel, or near it: the model's edge may lag by a few pixels.
-float model_depth_near(const Track& track, int u, int v) {
-  constexpr int kReach = 4;
-  const int offsets[5][2] = {{0, 0}, {-kReach, 0}, {kReach, 0}, {0, -kReach}, {0, kReach}};
-  for (const auto& o : offsets) {
-    const float z = track.view.z(u + o[0], v + o[1]);
-    if (z > 0) return z;
+// Depth of the track's model at the pixel, or near it: the object may have moved on by more than was
+// predicted.
+float model_depth_near(const Track& track, int u, int v, int reach) {
+  if (const float z = track.view.z(u, v); z > 0) return z;
+  const int steps[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+  for (int far = 1; far <= 2; ++far) {
+    for (const auto& step : steps) {
+      const float z = track.view.z(u + step[0] * far * reach / 2, v + step[1] * far * reach / 2);
+      if (z > 0) return z;
+    }
   }
   return 0;
 }
 
 std::uint8_t nearest_model(const Claims& claims, std::span<const Track> tracks, std::uint8_t label, int u,
-                           int v, float z) {
+                           int v, float z, int reach) {
   std::uint8_t best = 0;
   float best_gap = 0.03f + 0.004f * z * z;
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     if (!claims.claimed[label][k]) continue;
-    const float model = model_depth_near(tracks[k], u, v);
+    const float model = model_depth_near(tracks[k], u, v, reach);
     const float gap = std::fabs(z - model);
     if (model > 0 && gap < best_gap) {
       best_gap = gap;
@@ -120,6 +124,7 @@ struct RestStatistics {
 void associate(const AssociationInput& in, std::span<const Track> tracks, ImageView<std::uint8_t> owners,
                std::span<Owned> owned, UnexplainedList& unexplained) {
   const Claims claims = claim(in, tracks);
+  const int reach = in.labels.width / kReachShare;
   for (int i = 0; i < owners.pixels(); ++i) owners.data[i] = 0;
   for (Owned& o : owned) o = {};
   unexplained.clear();
@@ -136,7 +141,7 @@ void associate(const AssociationInput& in, std::span<const Track> tracks, ImageV
         if (in.labels(u, v) != label) continue;
         const float z = in.depth_z(u, v);
         const std::uint8_t k = owner < tracks.size() ? static_cast<std::uint8_t>(owner + 1)
-                                                     : nearest_model(claims, tracks, label, u, v, z);
+                                                     : nearest_model(claims, tracks, label, u, v, z, reach);
         owners(u, v) = k != 0 ? k : kForeign;
         if (k != 0)
           owned[k - 1u].add(u, v);

@@ -73,7 +73,15 @@ bool Habit::broken_by(const AlignResult& result, const Agreement& a) const {
   return frames_ >= kHabitFrames && agreeing(a) < kHabitAgree * agree_ && !part_is_gone(a);
 }
 
+float Habit::least_explained() const {
+  constexpr float kAnybody = 0.75f, kShareOfUsual = 0.9f;
+  const float usual = kShareOfUsual * explained_;
+  return frames_ >= kHabitFrames && usual < kAnybody ? usual : kAnybody;
+}
+
 void Habit::learn(const AlignResult& result, const Agreement& a) {
+  int frames = frames_;
+  learn_one(a.explained, frames, explained_);
   learn_one(agreeing(a), frames_, agree_);
   if (result.color.used > 0) learn_one(result.color.sigma, colored_frames_, color_sigma_);
 }

@@ -32,12 +32,14 @@ class Habit {
  public:
   bool broken_by(const AlignResult& result, const Agreement& agreement) const;
   bool broken_by_color(const AlignResult& result) const;
+  // What a pose that was found by searching must reach: soft and ragged things never fit well.
+  float least_explained() const;
   // Also from poses that broke it: what stays different (the lamps went out, a cloth lies on it) becomes the
   // habit before the track would be given up.
   void learn(const AlignResult& result, const Agreement& agreement);
 
  private:
-  float agree_ = 0, color_sigma_ = 0;
+  float agree_ = 0, explained_ = 0, color_sigma_ = 0;
   int frames_ = 0, colored_frames_ = 0;
 };
 

@@ -67,8 +67,8 @@ double fit_score(const AlignResult& result, const Agreement& a) {
 }
 
 bool is_found(const AlignResult& result, const Agreement& a, const Habit& habit) {
-  constexpr float kExplained = 0.75f, kMostLookedThrough = 0.15f;
-  return judge(result, a) == Verdict::kGood && a.explained >= kExplained &&
+  constexpr float kMostLookedThrough = 0.15f;
+  return judge(result, a) == Verdict::kGood && a.explained >= habit.least_explained() &&
          a.through <= kMostLookedThrough * (a.same + a.through) && !habit.broken_by_color(result);
 }
 
