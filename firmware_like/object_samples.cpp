@@ -70,8 +70,6 @@ void ObjectTracker::publish(FrameReport& report) {
     if (track.id == 0 || track.phase == Track::Phase::kFree) continue;
     const ObjectSample sample = sample_of(track);
     report.objects.push_back(sample);
-    if (static_cast<std::size_t>(track.id) > counts_.size())
-      counts_.push_back({track.id, report.t_s, report.t_s, 0, 0});
     if (static_cast<std::size_t>(track.id) > counts_.size()) continue;  // more objects than the list holds
     ObjectCount& count = counts_[static_cast<std::size_t>(track.id - 1)];
     if (sample.in_tum) count.last_t_s = report.t_s, ++count.tracked;

@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kViewMargin_px = 14;
 constexpr int kFramesPerSide = 20, kFirstFrames = 10;
+constexpr float kContradicted =
+    0.1f;  // share of the model that the frame sees through: it has to be carved away
 
 }  // namespace
 
@@ -132,6 +134,11 @@ void ObjectTracker::associate_pixels() {
                                frame_.depth_z,
                                frame_.camera};
   associate(input, tracks_, frame_.owners, owned_, unexplained_);
+  for (std::size_t k = 0; k < kMaxObjects; ++k) {
+    if (!tracks_[k].active() || owned_[k].pixels == 0) continue;
+    tracks_[k].owned_pixels = owned_[k].pixels;
+    tracks_[k].cut_balance += is_cut(owned_[k].box, segmentation_->view) ? 1 : -1;
+  }
 }
 
 AlignInput ObjectTracker::alignment_of(const Track& track, std::size_t k) const {
@@ -154,14 +161,19 @@ AlignInput ObjectTracker::alignment_of(const Track& track, std::size_t k) const 
 }
 
 void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& step) {
-  observe(track, k, owned_[k], step.color_term);
+  observe(track, k, owned_[k].box, step.color_term);
   track.aligned = AlignResult{};
-  if (track.points_used < 40 || track.view_pixels < 40) return;
+  if (track.points_used < kLeastPoints || track.view_pixels < kLeastPoints) return;
   AlignInput in = alignment_of(track, k);
   in.terms.color = in.terms.color && step.color_term;
   in.point_stride = step.point_stride;
-  track.aligned = config_.tracker == TrackerKind::kListing1 ? align_closest_point(in, clouds_[k], scratch_)
-                                                            : align(in, scratch_);
+  // The paper's alignment knows no floor, and needs nothing to leave it.
+  if (config_.tracker == TrackerKind::kListing1) {
+    track.aligned = align_closest_point(in, clouds_[k], scratch_);
+    return;
+  }
+  track.aligned = align(in, scratch_);
+  if (in.floor.on && step.point_stride == 1) leave_floor(track, in);
 }
 
 // Collects the track's pixels and gives them their colours, as they were when the depth was taken.
@@ -174,6 +186,25 @@ void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box, bool w
   track.points_used = gather_points(
       frame_.depth_z, frame_.owners, owner, box, frame_.camera,
       frame_.has_color && with_color ? registered_color_ : ImageView<std::uint32_t>{}, points_of(k));
+}
+
+// A hand that takes hold of an object hangs together with it. Meanwhile pixels beside the model, as it lies
+// at the pose just found, are no new surface of it.
+void ObjectTracker::keep_shape(const Track& track, std::size_t k) {
+  const PoseF to_view = to_float(track.view.T_camera_object * track.T_camera_object.inverse());
+  const Rect box = owned_[k].box;
+  for (int v = box.v0; v < box.v1; ++v) {
+    for (int u = box.u0; u < box.u1; ++u) {
+      if (frame_.owners(u, v) != k + 1) continue;
+      const Vec3f p =
+          to_view * (frame_.camera.ray(static_cast<float>(u), static_cast<float>(v)) * frame_.depth_z(u, v));
+      const Pinhole::Pixel at = frame_.camera.pixel_of(p);
+      bool on_model = false;
+      for (int dv = -1; dv <= 1; ++dv)
+        for (int du = -1; du <= 1; ++du) on_model = on_model || track.view.z(at.u + du, at.v + dv) > 0;
+      if (!on_model) frame_.owners(u, v) = kEdge;
+    }
+  }
 }
 
 // The frame goes into the model at the pose just found.
@@ -225,24 +256,6 @@ void ObjectTracker::align_all(const LadderStep& step) {
     if (tracks_[k].active()) align_one(tracks_[k], k, step);
 }
 
-// A thing that rests on the floor stays in its plane until frame after frame says otherwise; then it has six
-// degrees of freedom, until it has rested again for a second.
-void ObjectTracker::mark_planar(Track& track) {
-  if (!support_.found) return;
-  const Pose& T = track.aligned.T_camera_object;
-  const double height = std::fabs(support_.height_of(T.t));
-  const double lean = norm(T.R.col(2) - support_.up);
-  const bool off = height > 0.012 || lean > 0.03;
-  constexpr int kLeaves = 4, kRests = 30;
-  if (track.planar) {
-    track.off_floor_run = off ? track.off_floor_run + 1 : 0;
-    if (track.off_floor_run >= kLeaves) track.planar = false, track.off_floor_run = 0;
-  } else {
-    track.off_floor_run = off ? 0 : track.off_floor_run + 1;
-    if (track.off_floor_run >= kRests) track.planar = true, track.off_floor_run = 0;
-  }
-}
-
 void ObjectTracker::judge_one(Track& track) {
   const Pose D = track.aligned.T_camera_object * track.view.T_camera_object.inverse();
   track.agreement = compare(track.view, frame_.camera, frame_.depth_z, D, track.aligned.depth);
@@ -256,7 +269,7 @@ void ObjectTracker::judge_one(Track& track) {
     track.T_camera_object = track.motion.pose();
     return;
   }
-  mark_planar(track);
+  if (!track.planar) return_to_floor(track);
   track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
   track.T_camera_object = track.aligned.T_camera_object;
   for (int i = 0; i < 36; ++i) track.covariance[i] = track.aligned.covariance[i];
@@ -264,6 +277,7 @@ void ObjectTracker::judge_one(Track& track) {
   track.poor_run = 0;
   ++track.good_poses;
   track.last_good_t_s = frame_.input->t_s;
+  track.T_last_good = track.T_camera_object;
   if (norm(track.T_camera_object.t - track.birth_position) > 0.008) track.has_moved = true;
   track.yaw_source = yaw_source_of(track.aligned, support_.up);
 }
@@ -281,7 +295,9 @@ void ObjectTracker::integrate_all(const LadderStep& step) {
     // to smear.
     if (track.yaw_source == YawSource::kNone && track.integrated > 30) continue;
     std::uint8_t& fused = track.sides.side_of(track.T_camera_object);
-    if (fused < kFramesPerSide || track.integrated < kFirstFrames) {
+    const bool contradicted = track.agreement.through > kContradicted;
+    if (fused < kFramesPerSide || track.integrated < kFirstFrames || contradicted) {
+      if (owned_[k].divided) keep_shape(track, k);
       fuse(track, k);
       fused = static_cast<std::uint8_t>(fused + (fused < 255));
     }

@@ -7,6 +7,7 @@
 #include "algo/tracking/associate.hpp"
 #include "algo/tracking/closest_point.hpp"
 #include "algo/tracking/frame_view.hpp"
+#include "algo/tracking/make_room.hpp"
 #include "algo/tracking/recover.hpp"
 #include "algo/tracking/track.hpp"
 #include "algo/volume/integrate.hpp"
@@ -30,6 +31,8 @@ using ObjectCounts = FixedVector<ObjectCount, 64>;
 class ObjectTracker {
  public:
   static constexpr std::size_t kMaxPoints = 12288;  // observed points of one object
+  static constexpr int kLeastPoints = 40;           // fewer say nothing
+  static constexpr int kLeastNewcomer_px = 120;     // smaller segments begin no track and end no search
 
   ObjectTracker(const Calibration& calibration, const LoopConfig& config);
   ObjectTracker(const ObjectTracker&) = delete;  // the memory plan holds its address
@@ -75,26 +78,37 @@ class ObjectTracker {
   void update_support();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
   void judge_one(Track& track);
-  void mark_planar(Track& track);
+  void leave_floor(Track& track, const AlignInput& held);
+  void return_to_floor(Track& track);
   AlignInput alignment_of(const Track& track, std::size_t k) const;
   std::span<ObservedPoint> points_of(std::size_t k);
   void render_one(Track& track, const Pose& T);
   void observe(Track& track, std::size_t k, const Rect& box, bool with_color);
+  void keep_shape(const Track& track, std::size_t k);
   void fuse(Track& track, std::size_t k);
   void note_integrated(Track& track, const IntegrateStats& stats);
   void fuse_at_rest(Track& track, const Rect& box);
 
   void confirm(Track& track);
+  void confirm_proven();
   void lose(Track& track);
   void start_search();
+  bool start_search_of(std::size_t k, const Unexplained& what);
+  const Unexplained* search_candidate() const;
   void search_step();
-  void finish_search(const Unexplained& candidate, const Footprint& footprint);
-  double try_yaw(Track& track, std::size_t k, const Footprint& footprint, double yaw_rad);
+  void finish_search(const Unexplained& candidate, const Pose& T_camera_anchor);
+  double try_pose(Track& track, std::size_t k, const Pose& T_camera_object);
+  void fill_rest(const Rect& box);
+  void drop_fragments(const Rect& box);
   void begin_released();
+  bool may_be_a_lost_one(const Rect& box) const;
   void begin_tracks();
-  std::size_t free_slot();
+  std::size_t make_room(Newness newness);
+  void evict(Track& track);
+  void drop_doubles();
   void begin_from_pixels(const Unexplained& what);
   void claim_pixels(const Unexplained& what, std::size_t k);
+  void claim_near(const Unexplained& what, std::size_t k, const Vec3& centre, double radius_m);
   void log(EventKind kind, int object, double a = 0, double b = 0);
   ObjectSample sample_of(Track& track) const;
   void freeze_background();
@@ -113,7 +127,7 @@ class ObjectTracker {
   int next_id_ = 1;
 
   Track tracks_[kMaxObjects];
-  Rect owned_[kMaxObjects];  // box of each track's pixels in this frame
+  Owned owned_[kMaxObjects];  // each track's pixels in this frame
   std::span<ObservedPoint> points_;
   RaycastScratch raycast_scratch_;
   AlignScratch scratch_;

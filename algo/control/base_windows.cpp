@@ -85,18 +85,18 @@ class WindowFiller {
     block_ = {};
   }
   void add_point(const std::array<double, 3>& a) {
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       if (current_.n == 0) low_[i] = high_[i] = a[i];
       if (current_.n == 0) current_.first[i] = a[i];
       low_[i] = std::min(low_[i], a[i]);
       high_[i] = std::max(high_[i], a[i]);
       current_.sum[i] += a[i];
-      for (int k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < 3; ++k) {
         current_.outer[i][k] += a[i] * a[k];
         if (current_.n > 0) current_.lag[i][k] += current_.last[i] * a[k];
       }
     }
-    for (int i = 0; i < 3; ++i) current_.last[i] = a[i];
+    for (std::size_t i = 0; i < 3; ++i) current_.last[i] = a[i];
     ++current_.n;
   }
 

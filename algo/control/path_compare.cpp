@@ -156,7 +156,8 @@ Pose2 improved(std::span<const PathSample> path, std::span<const PlanarSample> b
     }
   }
   constexpr double kHold = 1e-4;
-  const double hold = kHold * static_cast<double>(base.size() / stride + 1);
+  const std::size_t rows = base.size() / stride + 1;
+  const double hold = kHold * static_cast<double>(rows);
   for (int k = 0; k < 3; ++k) H.m[k][k] += hold;
   double step[3];
   if (!H.solve(g, step)) return T_floor_path;

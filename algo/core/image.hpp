@@ -41,4 +41,8 @@ struct Rect {
   static constexpr Rect nothing() { return {1 << 30, 1 << 30, -(1 << 30), -(1 << 30)}; }
 };
 
+constexpr bool overlap(const Rect& a, const Rect& b) {
+  return a.u0 < b.u1 && b.u0 < a.u1 && a.v0 < b.v1 && b.v0 < a.v1;
+}
+
 }  // namespace st

@@ -113,4 +113,8 @@ Pose2 inverse(const Pose2& a) {
   return {-(sc.cos * a.x + sc.sin * a.y), sc.sin * a.x - sc.cos * a.y, -a.yaw};
 }
 
+Pose2 between(const Pose2& a, const Pose2& b, double f) {
+  return {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, wrap_angle(a.yaw + wrap_angle(b.yaw - a.yaw) * f)};
+}
+
 }  // namespace st

@@ -62,5 +62,7 @@ Mat3 from_roll_pitch_yaw(const Vec3& rpy);
 
 Pose2 compose(const Pose2& a, const Pose2& b);
 Pose2 inverse(const Pose2& a);
+// Share f of the way from a to b, turning the shorter way round.
+Pose2 between(const Pose2& a, const Pose2& b, double f);
 
 }  // namespace st

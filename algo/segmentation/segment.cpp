@@ -33,7 +33,13 @@ double largest_eigenvalue(const Mat3& m) {
 
 }  // namespace
 
-Segment describe(const SegmentSums& sums, float area_cm2, bool has_height, int width, int height) {
+bool is_cut(const Rect& box, const Rect& view) {
+  constexpr int kRagged = 3;  // pixels: depth images end unevenly
+  return box.u0 < view.u0 + kRagged || box.v0 < view.v0 + kRagged || box.u1 > view.u1 - kRagged ||
+         box.v1 > view.v1 - kRagged;
+}
+
+Segment describe(const SegmentSums& sums, float area_cm2, bool has_height, const Rect& view) {
   Segment s;
   const double n = 1.0 / sums.measured;
   const Vec3 mean{sums.x * n, sums.y * n, sums.z * n};
@@ -54,8 +60,7 @@ Segment describe(const SegmentSums& sums, float area_cm2, bool has_height, int w
     s.bottom_m = quantile(sums.heights, SegmentSums::kHeightBins, total, 0.02f);
     s.top_m = quantile(sums.heights, SegmentSums::kHeightBins, total, 0.98f);
   }
-  s.touches_border =
-      sums.box.u0 <= 1 || sums.box.v0 <= 1 || sums.box.u1 >= width - 1 || sums.box.v1 >= height - 1;
+  s.touches_border = is_cut(sums.box, view);
   s.unknown_share = static_cast<float>(sums.unknown) / static_cast<float>(sums.pixels);
   s.from_background = static_cast<float>(sums.released) > kReleasedShare * static_cast<float>(sums.measured);
   return s;

@@ -17,9 +17,9 @@ struct Segment {
   float mean_code = 0;
   bool has_height = false;        // a floor is known
   float bottom_m = 0, top_m = 0;  // above the floor, 2 % and 98 % quantiles
-  bool touches_border = false;
-  float unknown_share = 0;       // of pixels where no background is known
-  bool from_background = false;  // mainly the thing that is in `released`
+  bool touches_border = false;    // the edge of the view may cut it
+  float unknown_share = 0;        // of pixels where no background is known
+  bool from_background = false;   // mainly the thing that is in `released`
 };
 
 // What is summed up over a segment: its pixels are counted, and one in some of its cells is measured.
@@ -45,7 +45,10 @@ struct SegmentSums {
   }
 };
 
-// Box, size and place of what was summed (measured > 0). `width` and `height` are the image's.
-Segment describe(const SegmentSums& sums, float area_cm2, bool has_height, int width, int height);
+// Box, size and place of what was summed (measured > 0). `view`: the part of the image that has readings.
+Segment describe(const SegmentSums& sums, float area_cm2, bool has_height, const Rect& view);
+
+// Whether the view's edge may cut what lies in `box`: part of it is perhaps outside.
+bool is_cut(const Rect& box, const Rect& view);
 
 }  // namespace st

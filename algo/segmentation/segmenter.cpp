@@ -96,9 +96,33 @@ const Segmentation& Segmenter::process(const FrameInput& frame, ImageView<const 
 void Segmenter::learn() {
   background_.learn(out_.depth.code);
   out_.background_ready = background_.ready();
+  if (out_.background_ready) out_.view = seen_view();
   frames_ready_ = 0;
   changed_pixels_ = kChangedPixels;  // the things in it are still to be found
   calm_frames_ = 0;
+}
+
+// Sensors leave margins without readings: outermost rows and columns in which hardly a pixel has a background
+// are outside.
+Rect Segmenter::seen_view() const {
+  const ImageView<const std::uint16_t> mean = background_.code8();
+  constexpr int kShare = 20;
+  const auto row_seen = [&](int v) {
+    int known = 0;
+    for (int u = 0; u < width_; ++u) known += mean(u, v) != 0 ? 1 : 0;
+    return known * kShare > width_;
+  };
+  const auto column_seen = [&](int u) {
+    int known = 0;
+    for (int v = 0; v < height_; ++v) known += mean(u, v) != 0 ? 1 : 0;
+    return known * kShare > height_;
+  };
+  Rect view{0, 0, width_, height_};
+  while (!view.empty() && !row_seen(view.v0)) ++view.v0;
+  while (!view.empty() && !row_seen(view.v1 - 1)) --view.v1;
+  while (!view.empty() && !column_seen(view.u0)) ++view.u0;
+  while (!view.empty() && !column_seen(view.u1 - 1)) --view.u1;
+  return view;
 }
 
 bool Segmenter::view_has_changed() const {
@@ -231,7 +255,7 @@ void Segmenter::make_segments() {
   for (int number = 1; number <= count; ++number) {
     const float area = components_.area_cm2(number, tables_, step_);
     if (sums_[number - 1].measured == 0 || !is_segment(sums_[number - 1], area)) continue;
-    const Segment segment = describe(sums_[number - 1], area, out_.floor.found, width_, height_);
+    const Segment segment = describe(sums_[number - 1], area, out_.floor.found, out_.view);
     if (segment.has_height && segment.top_m < settings_.least_top_m && segment.bottom_m > kFlatBottom_m)
       continue;
     if (!out_.segments.push_back(segment)) break;

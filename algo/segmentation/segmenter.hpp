@@ -37,6 +37,7 @@ struct Segmentation {
   ImageView<const std::uint8_t> classes;        // PixelClass
   FixedVector<Segment, kMaxSegments> segments;  // largest area first
   bool background_ready = false;
+  Rect view{};  // the part of the image in which the sensor has readings; known with the background
   bool restarted = false;  // the whole view has changed (camera moved): learning anew
   Floor floor;
   bool has_released = false;  // one thing a frame: it has just begun to move
@@ -68,6 +69,7 @@ class Segmenter {
   void learn();
   void update_protos();
   void release_moved(const FrameInput& frame);
+  Rect seen_view() const;
   bool view_has_changed() const;
   void fill_cells(ImageView<std::uint16_t> cells) const;
   void make_segments();

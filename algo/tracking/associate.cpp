@@ -79,14 +79,22 @@ std::uint8_t nearest_model(const Claims& claims, std::span<const Track> tracks, 
   return best;
 }
 
+// A mature object shows new surface little by little. One that gains more at once, beyond what its model
+// would fill, has something else hanging on it: a hand.
+bool outgrown(const Track& track, const Segment& segment, int image_pixels) {
+  const bool mature = track.integrated >= kMatureFrames || track.from_background;
+  const int gain = track.owned_pixels + track.owned_pixels / 5;
+  const int known = gain > track.view_pixels ? gain : track.view_pixels;
+  return mature && segment.pixels > known + image_pixels / 1000;
+}
+
 // The one claimant of a segment that it may keep whole; tracks.size() when the segment has to be divided.
 std::size_t sole_claimant(const Claims& claims, std::span<const Track> tracks, const Segment& segment,
-                          std::size_t label) {
+                          std::size_t label, int image_pixels) {
   if (claims.claimants[label] != 1) return tracks.size();
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     if (!claims.claimed[label][k]) continue;
-    const bool outgrown = segment.pixels * 10 > tracks[k].view_pixels * 16 + 3000;
-    return outgrown && tracks[k].integrated >= kMatureFrames ? tracks.size() : k;
+    return outgrown(tracks[k], segment, image_pixels) ? tracks.size() : k;
   }
   return tracks.size();
 }
@@ -107,15 +115,18 @@ struct RestStatistics {
 }  // namespace
 
 void associate(const AssociationInput& in, std::span<const Track> tracks, ImageView<std::uint8_t> owners,
-               std::span<Rect> boxes, UnexplainedList& unexplained) {
+               std::span<Owned> owned, UnexplainedList& unexplained) {
   const Claims claims = claim(in, tracks);
   for (int i = 0; i < owners.pixels(); ++i) owners.data[i] = 0;
-  for (Rect& box : boxes) box = Rect::nothing();
+  for (Owned& o : owned) o = {};
   unexplained.clear();
   for (std::size_t i = 0; i < in.segments.size(); ++i) {
     const Segment& segment = in.segments[i];
     const std::uint8_t label = static_cast<std::uint8_t>(i + 1);
-    const std::size_t owner = sole_claimant(claims, tracks, segment, label);
+    const std::size_t owner = sole_claimant(claims, tracks, segment, label, owners.pixels());
+    if (owner == tracks.size())
+      for (std::size_t k = 0; k < tracks.size(); ++k)
+        owned[k].divided = owned[k].divided || claims.claimed[label][k];
     RestStatistics rest;
     for (int v = segment.box.v0; v < segment.box.v1; ++v) {
       for (int u = segment.box.u0; u < segment.box.u1; ++u) {
@@ -125,7 +136,7 @@ void associate(const AssociationInput& in, std::span<const Track> tracks, ImageV
                                                      : nearest_model(claims, tracks, label, u, v, z);
         owners(u, v) = k != 0 ? k : kForeign;
         if (k != 0)
-          boxes[k - 1u].include(u, v);
+          owned[k - 1u].add(u, v);
         else if (z > 0)
           rest.add(in.camera, u, v, z);
       }

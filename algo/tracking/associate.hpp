@@ -30,13 +30,25 @@ struct AssociationInput {
   Pinhole camera;
 };
 
+// The pixels of one track.
+struct Owned {
+  Rect box = Rect::nothing();
+  int pixels = 0;
+  bool divided = false;  // something else hangs together with them
+
+  void add(int u, int v) {
+    box.include(u, v);
+    ++pixels;
+  }
+};
+
 // Owner of a foreground pixel that no track explains: it is no object's surface, and nothing behind an object
 // either.
 inline constexpr std::uint8_t kForeign = 255;
 
-// Writes `owners`: 0 background, k + 1 for tracks[k], kForeign; boxes[k] around the pixels of tracks[k]; and
+// Writes `owners`: 0 background, k + 1 for tracks[k], kForeign; owned[k] about the pixels of tracks[k]; and
 // what is left. Every pixel of `owners` is set.
 void associate(const AssociationInput& input, std::span<const Track> tracks, ImageView<std::uint8_t> owners,
-               std::span<Rect> boxes, UnexplainedList& unexplained);
+               std::span<Owned> owned, UnexplainedList& unexplained);
 
 }  // namespace st

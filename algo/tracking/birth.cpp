@@ -66,12 +66,13 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.birth_position = footprint.T_camera_object.t;
   track.has_moved = false;
   track.from_background = false;
+  track.owned_pixels = track.cut_balance = track.double_run = track.lost_run = 0;
   track.good_poses = track.poor_run = track.integrated = track.still_run = track.published_gap = 0;
   track.last_good_t_s = t_s;
   track.sides = SeenSides{};
   track.habit = Habit{};
   track.planar = footprint.on_floor;
-  track.off_floor_run = 0;
+  track.off_floor_run = track.on_floor_run = 0;
   track.view_pixels = 0;
   track.points_used = 0;
 }

@@ -17,8 +17,7 @@ Agreement compare(const ModelView& view, const Pinhole& camera, ImageView<const 
       if (!(z > 0)) continue;
       const Vec3f p = Df * (camera.ray(static_cast<float>(u), static_cast<float>(v)) * z);
       if (!(p.z > 0.1f)) continue;
-      const int pu = static_cast<int>(std::floor(camera.fx * p.x / p.z + camera.cx + 0.5f));
-      const int pv = static_cast<int>(std::floor(camera.fy * p.y / p.z + camera.cy + 0.5f));
+      const auto [pu, pv] = camera.pixel_of(p);
       ++a.model_pixels;
       if (!depth_z.contains(pu, pv) || !(depth_z(pu, pv) > 0)) {
         ++counts[3];

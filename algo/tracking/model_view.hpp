@@ -2,6 +2,7 @@
 // pixels of the present frame that belong to the object.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "algo/core/pinhole.hpp"
@@ -17,6 +18,19 @@ struct ModelView {
   // Depth at the pixel, metres; 0 outside of the view and where the model is not seen.
   float z(int u, int v) const { return maps.contains(u, v) ? maps.z[maps.at(u, v)] : 0.0f; }
 };
+
+// Pixels of `box` in which two surfaces, each a function from pixel to depth (0: none), lie within near_m.
+template <typename A, typename B>
+int count_same_surface(const A& a, const B& b, const Rect& box, float near_m) {
+  int same = 0;
+  for (int v = box.v0; v < box.v1; ++v) {
+    for (int u = box.u0; u < box.u1; ++u) {
+      const float za = a(u, v), zb = b(u, v);
+      same += za > 0 && zb > 0 && std::fabs(za - zb) < near_m ? 1 : 0;
+    }
+  }
+  return same;
+}
 
 // A pixel of the object in the present frame.
 struct ObservedPoint {

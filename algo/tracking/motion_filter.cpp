@@ -11,11 +11,11 @@ void MotionFilter::start(const Pose& T_camera_object, const Mat3& R_reference_ca
   t_s_ = corrected_t_s_ = t_s;
   corrected_ = T_camera_object;
   output_ = MotionOutput{};
-  for (int i = 0; i < 6; ++i) {
-    const bool turn = i >= 3;
-    const double value = turn ? 0.05 : 0.01, rate = turn ? 1.0 : 0.5;
-    axis_[i] = {0, value * value, 0, rate * rate};
-  }
+  for (int i = 0; i < 6; ++i) axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
+}
+
+void MotionFilter::leave_plane() {
+  for (const int i : {2, 3, 4}) axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
 }
 
 Pose MotionFilter::motion_at(const Vec3& velocity_mps, const Vec3& angular_velocity_rps, double dt_s) const {

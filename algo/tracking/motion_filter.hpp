@@ -26,6 +26,9 @@ class MotionFilter {
   // Starts at rest. R_reference_camera: axes in which the filter works.
   void start(const Pose& T_camera_object, const Mat3& R_reference_camera, double t_s);
 
+  // Height and lean (the reference axes' z is up) are unknown anew.
+  void leave_plane();
+
   // Moves the estimate on to time t_s.
   void predict(double t_s, const MotionNoise& noise);
 
@@ -59,6 +62,7 @@ class MotionFilter {
     double rate = 0;
     double pp = 0, pr = 0, rr = 0;  // covariance of (value, rate)
   };
+  static constexpr Axis kUnknownPosition{0, 0.01 * 0.01, 0, 0.5 * 0.5}, kUnknownTurn{0, 0.05 * 0.05, 0, 1.0};
   Axis axis_[6];
   Pose pose_;
   Mat3 R_reference_camera_;

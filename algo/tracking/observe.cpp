@@ -33,22 +33,22 @@ void mark_edges(ImageView<const float> depth_z, std::uint8_t owner, const Rect& 
   }
 }
 
-std::size_t gather_points(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
-                          std::uint8_t owner, const Rect& roi, const Pinhole& camera,
-                          ImageView<const std::uint32_t> color, std::span<ObservedPoint> out) {
-  const Rect box = roi.clipped(depth_z.width, depth_z.height);
+namespace {
+
+// The pixels of `box` for which keep(u, v) holds, thinned evenly to the capacity of `out`.
+template <typename Keep>
+std::size_t gather(ImageView<const float> depth_z, const Rect& box, const Pinhole& camera,
+                   ImageView<const std::uint32_t> color, std::span<ObservedPoint> out, const Keep& keep) {
   std::size_t candidates = 0;
   for (int v = box.v0; v < box.v1; ++v)
-    for (int u = box.u0; u < box.u1; ++u)
-      if (owners(u, v) == owner && depth_z(u, v) > 0) ++candidates;
+    for (int u = box.u0; u < box.u1; ++u) candidates += keep(u, v) ? 1 : 0;
   if (candidates == 0 || out.empty()) return 0;
   const std::size_t every = (candidates + out.size() - 1) / out.size();
 
   std::size_t seen = 0, used = 0;
   for (int v = box.v0; v < box.v1; ++v) {
     for (int u = box.u0; u < box.u1; ++u) {
-      if (owners(u, v) != owner || !(depth_z(u, v) > 0)) continue;
-      if (seen++ % every != 0) continue;
+      if (!keep(u, v) || seen++ % every != 0) continue;
       ObservedPoint& point = out[used++];
       point.p = camera.ray(static_cast<float>(u), static_cast<float>(v)) * depth_z(u, v);
       point.luminance = color.empty() || alpha_of(color(u, v)) == 0 ? -1.0f : luminance_of(color(u, v));
@@ -57,6 +57,33 @@ std::size_t gather_points(ImageView<const float> depth_z, ImageView<const std::u
     }
   }
   return used;
+}
+
+}  // namespace
+
+std::size_t gather_points(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
+                          std::uint8_t owner, const Rect& roi, const Pinhole& camera,
+                          ImageView<const std::uint32_t> color, std::span<ObservedPoint> out) {
+  return gather(depth_z, roi.clipped(depth_z.width, depth_z.height), camera, color, out,
+                [&](int u, int v) { return owners(u, v) == owner && depth_z(u, v) > 0; });
+}
+
+std::size_t gather_near_view(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
+                             std::uint8_t owner, const ModelView& view, const Pinhole& camera,
+                             ImageView<const std::uint32_t> color, std::span<ObservedPoint> out) {
+  constexpr float kNear_m = 0.08f;
+  const int reach = depth_z.width / 80;
+  const auto near_model = [&](int u, int v) {
+    const int around[5][2] = {{0, 0}, {-reach, 0}, {reach, 0}, {0, -reach}, {0, reach}};
+    for (const auto& o : around) {
+      const float model = view.z(u + o[0], v + o[1]);
+      if (model > 0 && std::fabs(depth_z(u, v) - model) < kNear_m) return true;
+    }
+    return false;
+  };
+  return gather(depth_z, view.maps.roi.grown(reach).clipped(depth_z.width, depth_z.height), camera, color,
+                out,
+                [&](int u, int v) { return owners(u, v) == owner && depth_z(u, v) > 0 && near_model(u, v); });
 }
 
 void ColorRegistration::configure(const Calibration& calibration) {

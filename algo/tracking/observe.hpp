@@ -21,6 +21,12 @@ std::size_t gather_points(ImageView<const float> depth_z, ImageView<const std::u
                           std::uint8_t owner, const Rect& roi, const Pinhole& camera,
                           ImageView<const std::uint32_t> color, std::span<ObservedPoint> out);
 
+// The same, of the pixels that may lie on the model as `view` shows it: within 8 cm in depth, and an
+// eightieth of the image's width beside it.
+std::size_t gather_near_view(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
+                             std::uint8_t owner, const ModelView& view, const Pinhole& camera,
+                             ImageView<const std::uint32_t> color, std::span<ObservedPoint> out);
+
 // A step in depth larger than noise and slope.
 inline float edge_step_m(float z_m) { return 0.015f + 0.012f * z_m * z_m; }
 

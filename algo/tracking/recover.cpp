@@ -6,20 +6,21 @@
 
 namespace st {
 
-void Search::start(std::size_t lost_track, const Unexplained& candidate) {
+void Search::start(std::size_t lost_track, const Unexplained& candidate, bool at_last_place) {
   *this = Search{};
   running = true;
+  in_place = at_last_place;
   track = lost_track;
   box = candidate.box;
   centroid = candidate.centroid;
 }
 
-void Search::note(double score, double yaw_rad) {
+void Search::note(double score, const Pose& T_anchor_object) {
   if (score > best[0].score) {
     best[1] = best[0];
-    best[0] = {score, yaw_rad};
+    best[0] = {score, T_anchor_object};
   } else if (score > best[1].score) {
-    best[1] = {score, yaw_rad};
+    best[1] = {score, T_anchor_object};
   }
 }
 
@@ -45,13 +46,19 @@ Pose hypothesis(const Track& track, const Footprint& footprint, const Support& s
   return T;
 }
 
+Pose turned_in_place(const Track& track, const Support& support, double yaw_rad) {
+  const Vec3 centre = track.bounds.centre();
+  Pose T;
+  T.R = orthonormalized(rotation_from_vector(support.up * yaw_rad) * track.T_last_good.R);
+  T.t = track.T_last_good * centre - T.R * centre;
+  return T;
+}
+
 double fit_score(const AlignResult& result, const Agreement& a) {
   if (!result.solved) return 0;
-  const double seen = static_cast<double>(a.same) + a.through;
-  const double agree = seen > 0 ? a.same / seen : 0;
   const double color =
       result.color.used > 30 ? 1.0 / (1.0 + result.color.sigma * result.color.sigma / 200.0) : 0.5;
-  return agree * a.explained * (0.5 + 0.5 * color);
+  return a.same * a.explained * (0.5 + 0.5 * color);
 }
 
 }  // namespace st

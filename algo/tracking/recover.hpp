@@ -14,6 +14,7 @@ struct Search {
   static constexpr int kKept = 2;
 
   bool running = false;
+  bool in_place = false;   // about the last good pose, within a segment larger than the object
   std::size_t track = 0;   // which lost track is looked for
   int next_yaw = 0;        // of kSearchYaws
   int frames_without = 0;  // frames in a row in which the candidate was not there
@@ -21,11 +22,11 @@ struct Search {
   Vec3f centroid{};
   struct Found {
     double score = -1;
-    double yaw_rad = 0;  // about the floor's up axis, from the object's first orientation
+    Pose T_anchor_object;  // the candidate may move on until it is refined: relative to where it stands
   } best[kKept];
 
-  void start(std::size_t lost_track, const Unexplained& candidate);
-  void note(double score, double yaw_rad);
+  void start(std::size_t lost_track, const Unexplained& candidate, bool at_last_place);
+  void note(double score, const Pose& T_anchor_object);
 };
 
 // Could the points at this footprint be the lost object? Compares sizes; generous, since only one side is
@@ -35,7 +36,11 @@ bool size_fits(const Bounds& model, const Bounds& candidate, bool touches_border
 // The model set on the candidate's footprint, turned by yaw: where the alignment starts.
 Pose hypothesis(const Track& track, const Footprint& footprint, const Support& support, double yaw_rad);
 
-// How well a tried pose fits, 0-1: agreement in depth, and in colour where there is one.
+// The last good pose turned about the vertical through the model's middle.
+Pose turned_in_place(const Track& track, const Support& support, double yaw_rad);
+
+// How well a tried pose fits, 0-1: share of the model that is seen where it should be, of the points near it
+// that it explains, and colour where there is one.
 double fit_score(const AlignResult& result, const Agreement& agreement);
 
 }  // namespace st

@@ -54,10 +54,14 @@ struct Track {
   int id = 0;              // 0 until confirmed
   bool left_view = false;  // went out through the edge of the image
   bool from_background = false;
+  int owned_pixels = 0;  // in the last frame in which it had any
+  int cut_balance =
+      0;  // frames in which the edge of the view may have cut it, less those in which it did not
   Volume volume;
   Bounds bounds;
   MotionFilter motion;
   Pose T_camera_object;  // newest estimate, whatever its state
+  Pose T_last_good;
   TrackState state = TrackState::kLost;
 
   Vec3 birth_position{};  // camera frame, of the object's origin
@@ -68,13 +72,16 @@ struct Track {
   int integrated = 0;      // frames fused into the model
   bool told_full = false;  // that its volume is too small
   int still_run = 0;       // frames in a row without motion
+  int double_run = 0;      // frames in a row in which its model lay inside another's
+  int lost_run = 0;        // frames in a row in which it was lost
   int published_gap = 0;   // predicted rows in a row
   double last_good_t_s = 0;
   double yaw_unwrapped = 0;  // as published, floor frame
   double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
 
   bool planar = true;     // rests on the floor: floor prior applies
-  int off_floor_run = 0;  // good frames in a row that contradict it
+  int off_floor_run = 0;  // frames in a row that contradict it
+  int on_floor_run = 0;   // frames in a row that would allow it again
 
   ModelView rendered;  // memory for the model's view
   ModelView view;  // what this frame is aligned with: rendered, or in frame-to-frame mode the frame before
@@ -86,6 +93,8 @@ struct Track {
   Habit habit;
   YawSource yaw_source = YawSource::kNone;
 
+  // What is seen may be a part of something larger. A whole thing that an arm takes hold of stays whole.
+  bool cut() const { return cut_balance > 0; }
   bool active() const { return phase == Phase::kCandidate || phase == Phase::kTracked; }
 };
 

@@ -13,14 +13,11 @@ void decode_packet(RobotModel model, int packet, std::span<const std::uint8_t> d
   const oi::PacketRange range = oi::packet_range(model, packet);
   std::size_t at = 0;
   for (int id = range.first; id <= range.last; ++id) {
+    const bool is_long = oi::packet_size(model, id) == 2;
     int value = data[at++];
-    const bool is_signed = oi::packet_is_signed(id);
-    if (oi::packet_size(model, id) == 2) {
-      value = value << 8 | data[at++];
-      if (is_signed) value = static_cast<std::int16_t>(value);
-    } else if (is_signed) {
-      value = static_cast<std::int8_t>(value);
-    }
+    if (is_long) value = value << 8 | data[at++];
+    const int half = is_long ? 1 << 15 : 1 << 7;
+    if (oi::packet_is_signed(id) && value >= half) value -= 2 * half;
     state.set(id, value);
   }
 }

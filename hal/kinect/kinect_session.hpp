@@ -10,8 +10,8 @@
 #include "hal/kinect/live_frames.hpp"
 #include "hal/source/stamp_clock.hpp"
 
-struct _freenect_context;
-struct _freenect_device;
+struct _freenect_context;  // NOLINT(bugprone-reserved-identifier): libfreenect's own name
+struct _freenect_device;   // NOLINT(bugprone-reserved-identifier)
 
 namespace st {
 

@@ -39,7 +39,7 @@ std::string claim_default(std::string_view source) {
   const std::string name = default_run_name(local, source);
   fs::create_directories(fs::path(name).parent_path());
   for (int i = 1; i < 1000; ++i) {
-    const std::string candidate = i == 1 ? name : name + "-" + std::to_string(i);
+    std::string candidate = i == 1 ? name : name + "-" + std::to_string(i);
     if (fs::create_directory(candidate)) return candidate;
   }
   throw refused(name, "a thousand runs have this name; give another with --out");

@@ -24,7 +24,8 @@ std::string deterministic_hash(const std::string& run_folder) {
   }
   std::ranges::sort(names);
   std::uint64_t hash = kFnvStart;
-  for (const std::string& name : names) hash = fnv1a(read_whole_file(run_folder + "/" + name), hash);
+  for (const std::string& name : names)
+    hash = fnv1a(read_whole_file(std::filesystem::path(run_folder) / name), hash);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   return text;

@@ -25,8 +25,9 @@ bool parse_pose(std::string_view line, TumPose& pose) {
   for (double& v : value)
     if (!parse_number(next_field(line), v)) return false;
   const Quaternion q{value[4], value[5], value[6], value[7]};
-  constexpr double kLeastNorm = 1e-6;
-  if (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w < kLeastNorm * kLeastNorm) return false;
+  constexpr double kLeast = 1e-12, kMost = 1e12;  // of the squared length: beyond them it is no rotation
+  const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  if (!(length2 >= kLeast && length2 <= kMost)) return false;
   pose.t_s = value[0];
   pose.T = {from_quaternion(q), {value[1], value[2], value[3]}};
   const std::string_view track = next_field(line);

@@ -79,7 +79,7 @@ void add_person(Scene& scene, const std::function<bool(double, Pose2&, double&)>
 
 }  // namespace
 
-Motion drive_on_floor(std::shared_ptr<const Trajectory> way, double lead_s) {
+Motion drive_on_floor(const std::shared_ptr<const Trajectory>& way, double lead_s) {
   return [way, lead_s](double t, Pose& out) {
     out = on_floor(way->at(t + lead_s));
     return true;
@@ -95,7 +95,7 @@ Motion add_setting_down(Scene& scene, const Stage& stage, const Motion& then, Ra
   const double side = random.uniform() < 0.5 ? -1 : 1;
   const Vec3 outside = stage.T_room_stage.R * Vec3{-0.3, 1.7 * side, 0.75};
   const double twist = random.uniform(-0.6, 0.6);
-  const Motion robot = [then, outside, twist](double t, Pose& out) {
+  Motion robot = [then, outside, twist](double t, Pose& out) {
     if (t < 1.2 || !then(t, out)) return false;
     const double away = 1 - ease(t, 1.2, 3.2), up = 1 - ease(t, 2.6, 4.4);
     out.t += Vec3{outside.x * away, outside.y * away, 0.35 * up + (outside.z - 0.35) * away};

@@ -10,7 +10,7 @@
 namespace st::sim {
 
 // Follows a way on the floor; `lead_s` is the way's time at the scene's time zero.
-Motion drive_on_floor(std::shared_ptr<const Trajectory> way, double lead_s);
+Motion drive_on_floor(const std::shared_ptr<const Trajectory>& way, double lead_s);
 void add_robot(Scene& scene, const RobotShape& shape, const Motion& motion, const std::string& label);
 
 // An arm brings the robot in from the side, sets it down where `then` begins, lets go and leaves (until 6 s).

@@ -12,10 +12,10 @@
 namespace st::sim {
 namespace {
 
-Pose2 between(const SimStateEntry& a, const SimStateEntry& b, std::int64_t ns) {
+Pose2 pose_between(const SimStateEntry& a, const SimStateEntry& b, std::int64_t ns) {
   const double span = static_cast<double>(b.monotonic_ns - a.monotonic_ns);
   const double f = span > 0 ? static_cast<double>(ns - a.monotonic_ns) / span : 0.0;
-  return {a.x_m + (b.x_m - a.x_m) * f, a.y_m + (b.y_m - a.y_m) * f, a.yaw_rad + (b.yaw_rad - a.yaw_rad) * f};
+  return between(Pose2{a.x_m, a.y_m, a.yaw_rad}, Pose2{b.x_m, b.y_m, b.yaw_rad}, f);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ bool RobotStateReader::pose_at(std::int64_t ns, Pose2& pose) const {
         before = entry(--i);
       }
       pose = before.monotonic_ns > ns ? Pose2{before.x_m, before.y_m, before.yaw_rad}
-                                      : between(before, after, ns);
+                                      : pose_between(before, after, ns);
     }
     std::atomic_thread_fence(std::memory_order_acquire);
     if (ring_->written.load(std::memory_order_relaxed) - oldest < SimStateRing::kEntries) return true;

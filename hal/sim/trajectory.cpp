@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algo/core/scalar_math.hpp"
-
 namespace st::sim {
 namespace {
 
@@ -34,10 +32,7 @@ Pose2 Trajectory::at(double t_s) const {
   const double at = std::clamp(t_s * kRate_hz, 0.0, static_cast<double>(poses_.size() - 1));
   const auto i = std::min(static_cast<std::size_t>(at), poses_.size() - 2);
   const double f = at - static_cast<double>(i);
-  const Pose2 &a = poses_[i], &b = poses_[i + 1];
-  // Headings are kept in (-pi, pi]: between one at the end of that range and the next at its beginning lies
-  // no turn round.
-  return {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.yaw + wrap_angle(b.yaw - a.yaw) * f};
+  return between(poses_[i], poses_[i + 1], f);
 }
 
 std::vector<PresetSample> ideal_path(const std::vector<DriveCommand>& commands) {

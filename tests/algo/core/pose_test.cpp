@@ -35,3 +35,10 @@ TEST(Pose, MovingAboutAPivotLeavesThePivotWhereItIs) {
   const Pose moved = moved_about(T, {{}, {0.1, 0.2, -0.3}}, pivot);
   DOUBLES_EQUAL(0.0, norm(moved * pivot_object - pivot), 1e-14);
 }
+
+TEST(Pose, BetweenTwoHeadingsLiesTheShorterWay) {
+  const Pose2 middle = between({0, 0, kPi - 0.1}, {2, 4, -kPi + 0.3}, 0.5);
+  DOUBLES_EQUAL(0, wrap_angle(middle.yaw - (kPi + 0.1)), 1e-12);
+  DOUBLES_EQUAL(1, middle.x, 0);
+  DOUBLES_EQUAL(2, middle.y, 0);
+}

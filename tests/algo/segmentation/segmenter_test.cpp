@@ -13,8 +13,10 @@ namespace {
 
 class Rig {
  public:
-  explicit Rig(int width = 320)
-      : camera_(test::kinect_calibration(width, width * 3 / 4)),
+  // `blind`: columns at the right edge that have no readings, as a Kinect's have none.
+  explicit Rig(int width = 320, int blind = 0)
+      : blind_(blind),
+        camera_(test::kinect_calibration(width, width * 3 / 4)),
         renderer_(camera_),
         memory_([&](Bump& b) { segmenter_.bind(b, camera_); }),
         owner_(static_cast<std::size_t>(camera_.depth.width * camera_.depth.height), 0) {
@@ -22,8 +24,12 @@ class Rig {
   }
   const Segmentation& step(const test::TestScene& scene) {
     frame_ = &renderer_.render(scene);
+    const int width = camera_.depth.width, height = camera_.depth.height;
+    raw_ = frame_->raw;
+    for (int v = 0; v < height; ++v)
+      for (int u = width - blind_; u < width; ++u) raw_[static_cast<std::size_t>(v * width + u)] = 2047;
     FrameInput input;
-    input.depth = {frame_->raw.data(), camera_.depth.width, camera_.depth.height};
+    input.depth = {raw_.data(), width, height};
     out_ = &segmenter_.process(input, {owner_.data(), camera_.depth.width, camera_.depth.height});
     return *out_;
   }
@@ -49,6 +55,8 @@ class Rig {
   }
 
  private:
+  int blind_;
+  std::vector<std::uint16_t> raw_;
   Calibration camera_;
   test::SceneCamera renderer_;
   Segmenter segmenter_;
@@ -135,6 +143,20 @@ TEST(Segmenter, TwoMoversAreTwoSegments) {
     DOUBLES_EQUAL(0.4, static_cast<double>(g.extent_m), 0.15);
     CHECK_FALSE(g.touches_border);
   }
+}
+
+TEST(Segmenter, TheEdgeOfTheViewIsWhereReadingsEnd) {
+  Rig rig(160, 12);
+  for (int i = 0; i < 12; ++i) rig.step(lab(-0.3));
+  const Segmentation& s = rig.step(lab(-0.3));
+  CHECK(s.background_ready);
+  LONGS_EQUAL(0, s.view.u0);
+  LONGS_EQUAL(160 - 12, s.view.u1);
+  LONGS_EQUAL(120, s.view.v1);
+  const Rect view{0, 0, 100, 80};
+  CHECK(is_cut({90, 20, 99, 40}, view));
+  CHECK(is_cut({40, 0, 60, 40}, view));
+  CHECK_FALSE(is_cut({40, 10, 60, 40}, view));
 }
 
 TEST(Segmenter, AnOwnedRobotNeverMeltsAndAMovedChairDoes) {

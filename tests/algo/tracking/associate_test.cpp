@@ -19,7 +19,7 @@ TEST_GROUP(Associate) {
   std::unique_ptr<Track[]> tracks = std::make_unique<Track[]>(2);
   std::vector<std::unique_ptr<FlatView>> views;
   UnexplainedList unexplained;
-  Rect boxes[2];
+  Owned owned[2];
 
   // A track whose model fills the rectangle at z_m; grown up, unless said otherwise.
   void add_track(std::size_t k, const Rect& box, float z_m) {
@@ -27,7 +27,7 @@ TEST_GROUP(Associate) {
     Track& track = tracks[k];
     track.phase = Track::Phase::kTracked;
     track.view = views.back()->view;
-    track.view_pixels = box.width() * box.height();
+    track.view_pixels = track.owned_pixels = box.width() * box.height();
     track.integrated = 50;
     track.motion.start({{}, {0, 0, z_m}}, {}, 0);
   }
@@ -49,7 +49,7 @@ TEST_GROUP(Associate) {
   }
   void assign() {
     const AssociationInput in{{labels.data(), kW, kH}, segments, {depth.data(), kW, kH}, kSmallCamera};
-    associate(in, {tracks.get(), 2}, {owners.data(), kW, kH}, boxes, unexplained);
+    associate(in, {tracks.get(), 2}, {owners.data(), kW, kH}, owned, unexplained);
   }
   static std::size_t at(int u, int v) { return static_cast<std::size_t>(v * kW + u); }
   int count(const Rect& box, std::uint8_t owner) const {
@@ -62,12 +62,37 @@ TEST_GROUP(Associate) {
 
 TEST(Associate, ASegmentThatOneTrackExplainsIsItsOwnGrowthIncluded) {
   add_track(0, {40, 40, 70, 70}, 1.2f);
-  paint({38, 38, 74, 72}, 1.2f, 1);
-  add_segment({38, 38, 74, 72});
+  paint({39, 39, 72, 71}, 1.2f, 1);
+  add_segment({39, 39, 72, 71});
   assign();
-  LONGS_EQUAL(36 * 34, count({0, 0, kW, kH}, 1));
-  LONGS_EQUAL(kW * kH - 36 * 34, count({0, 0, kW, kH}, 0));  // and every other pixel was set
+  LONGS_EQUAL(33 * 32, count({0, 0, kW, kH}, 1));
+  LONGS_EQUAL(33 * 32, owned[0].pixels);
+  CHECK_FALSE(owned[0].divided);
+  LONGS_EQUAL(kW * kH - 33 * 32, count({0, 0, kW, kH}, 0));  // and every other pixel was set
   LONGS_EQUAL(0, unexplained.size());
+}
+
+TEST(Associate, WhatComesOutFromBehindSomethingMayGrowUpToItsModelAtOnce) {
+  const Rect model{40, 40, 70, 70};
+  add_track(0, model, 1.2f);
+  tracks[0].owned_pixels = 100;
+  paint(model, 1.2f, 1);
+  add_segment(model);
+  assign();
+  LONGS_EQUAL(900, count(model, 1));
+  CHECK_FALSE(owned[0].divided);
+}
+
+TEST(Associate, AHandNoLargerThanTheObjectIsNotItsGrowth) {
+  const Rect object{40, 40, 70, 70}, hand{70, 45, 95, 65};
+  add_track(0, object, 1.2f);
+  paint(object, 1.2f, 1);
+  paint(hand, 1.2f, 1);
+  add_segment({40, 40, 95, 70});
+  assign();
+  CHECK(owned[0].divided);
+  LONGS_EQUAL(900, count(object, 1));
+  CHECK(count(hand, kForeign) >= 400);
 }
 
 TEST(Associate, TwoThatTouchAreDividedByTheirModels) {
@@ -80,8 +105,8 @@ TEST(Associate, TwoThatTouchAreDividedByTheirModels) {
   assign();
   LONGS_EQUAL(900, count(near_one, 1));
   LONGS_EQUAL(900, count(far_one, 2));
-  LONGS_EQUAL(70, boxes[0].u1);
-  LONGS_EQUAL(70, boxes[1].u0);
+  LONGS_EQUAL(70, owned[0].box.u1);
+  LONGS_EQUAL(70, owned[1].box.u0);
   LONGS_EQUAL(0, unexplained.size());
 }
 

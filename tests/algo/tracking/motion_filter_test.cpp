@@ -119,6 +119,26 @@ TEST(MotionFilter, ThePriorIsThatOfTheAxesTheFilterWorksIn) {
   DOUBLES_EQUAL(0, prior.information[3], 0);  // turn and place apart
 }
 
+TEST(MotionFilter, WhatLeavesThePlaneMayRiseAndLeanButKeepsItsWay) {
+  MotionFilter filter = after(30, Covariance{1e-5, 1e-3});
+  const Vec3 velocity = filter.velocity_mps();
+  const MotionPrior held = filter.prior();
+  filter.leave_plane();
+  const MotionPrior left = filter.prior();
+  // About the floor's axes, in which the filter works: rows of the rotation into them.
+  const auto about = [](const MotionPrior& prior, int axis) {
+    double sum = 0;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        sum += kFloorFromCamera(axis % 3, r) * prior.information[6 * (axis / 3 * 3 + r) + axis / 3 * 3 + c] *
+               kFloorFromCamera(axis % 3, c);
+    return sum;
+  };
+  for (const int i : {2, 3, 4}) CHECK(about(left, i) < 0.2 * about(held, i));
+  for (const int i : {0, 1, 5}) DOUBLES_EQUAL(about(held, i), about(left, i), 1e-6 * about(held, i));
+  DOUBLES_EQUAL(velocity.x, filter.velocity_mps().x, 0);
+}
+
 TEST(MotionFilter, CoastingFadesAndRestStops) {
   MotionFilter filter = after(12);
   filter.coast(0.5);
