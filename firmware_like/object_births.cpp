@@ -110,15 +110,16 @@ ObjectTracker::Newcomer* ObjectTracker::newcomer_at(const Rect& box) {
   return nullptr;
 }
 
-// Whether a lost object, or one that is about to be lost, may be in there: it is looked for first.
-bool ObjectTracker::may_be_a_lost_one(const Rect& box) const {
+// Whether an object that is lost, or about to be, is looked for where it was, in a segment that hides its
+// size.
+bool ObjectTracker::is_looked_for_in(const Unexplained& what) const {
   constexpr int kLookedFor = 24;  // frames: two searches
-  if (search_.running && overlap(search_.box, box)) return true;
+  if (!what.touches_border) return false;
   for (const Track& track : tracks_) {
     const bool failing = track.phase == Track::Phase::kTracked && track.poor_run > 0;
     const bool lost = track.phase == Track::Phase::kLost && track.lost_run < kLookedFor;
     if (!(failing || lost) || track.cut()) continue;
-    if (overlap(image_box(track.bounds, track.T_last_good, frame_.camera, 0), box)) return true;
+    if (overlap(image_box(track.bounds, track.T_last_good, frame_.camera, 0), what.box)) return true;
   }
   return false;
 }
@@ -135,7 +136,7 @@ void ObjectTracker::begin_tracks() {
     }
     known->box = what.box;
     known->seen = true;
-    if (!may_be_a_lost_one(what.box) && ++known->frames >= kNewcomerFrames) {
+    if (!is_looked_for_in(what) && ++known->frames >= kNewcomerFrames) {
       begin_from_pixels(what);
       known->seen = false;
     }

@@ -104,15 +104,22 @@ void ObjectTracker::freeze_background() {
   }
 }
 
+// A candidate with enough good poses that is nobody who is missed.
+bool ObjectTracker::is_proven(const Track& candidate) const {
+  if (candidate.phase != Track::Phase::kCandidate || candidate.good_poses < kGoodPosesToConfirm ||
+      !candidate.has_moved)
+    return false;
+  for (const Track& lost : tracks_)
+    if (may_be_lost_one(candidate, lost)) return false;
+  return true;
+}
+
 // Numbers those that have proved themselves: in one frame the larger first, then the one further left.
 void ObjectTracker::confirm_proven() {
   for (std::size_t round = 0; round < kMaxObjects; ++round) {
     std::size_t next = kMaxObjects;
     for (std::size_t k = 0; k < kMaxObjects; ++k) {
-      const Track& track = tracks_[k];
-      if (track.phase != Track::Phase::kCandidate || track.good_poses < kGoodPosesToConfirm ||
-          !track.has_moved)
-        continue;
+      if (!is_proven(tracks_[k])) continue;
       const bool first = next == kMaxObjects || owned_[k].pixels > owned_[next].pixels ||
                          (owned_[k].pixels == owned_[next].pixels && owned_[k].box.u0 < owned_[next].box.u0);
       if (first) next = k;

@@ -137,6 +137,7 @@ void ObjectTracker::associate_pixels() {
   for (std::size_t k = 0; k < kMaxObjects; ++k) {
     if (!tracks_[k].active() || owned_[k].pixels == 0) continue;
     tracks_[k].owned_pixels = owned_[k].pixels;
+    tracks_[k].divided_run = owned_[k].divided ? tracks_[k].divided_run + 1 : 0;
     tracks_[k].cut_balance += is_cut(owned_[k].box, segmentation_->view) ? 1 : -1;
   }
 }
@@ -188,21 +189,22 @@ void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box, bool w
       frame_.has_color && with_color ? registered_color_ : ImageView<std::uint32_t>{}, points_of(k));
 }
 
-// A hand that takes hold of an object hangs together with it. Meanwhile pixels beside the model, as it lies
-// at the pose just found, are no new surface of it.
+// A hand that takes hold of an object hangs together with it. Meanwhile neither pixels beside the model, as
+// it lies at the pose just found, nor any outside of its known extent are new surface of it.
 void ObjectTracker::keep_shape(const Track& track, std::size_t k) {
-  const PoseF to_view = to_float(track.view.T_camera_object * track.T_camera_object.inverse());
+  const PoseF T_object_camera = to_float(track.T_camera_object.inverse());
+  const PoseF T_view_object = to_float(track.view.T_camera_object);
   const Rect box = owned_[k].box;
   for (int v = box.v0; v < box.v1; ++v) {
     for (int u = box.u0; u < box.u1; ++u) {
       if (frame_.owners(u, v) != k + 1) continue;
-      const Vec3f p =
-          to_view * (frame_.camera.ray(static_cast<float>(u), static_cast<float>(v)) * frame_.depth_z(u, v));
-      const Pinhole::Pixel at = frame_.camera.pixel_of(p);
+      const Vec3f p = T_object_camera * (frame_.camera.ray(static_cast<float>(u), static_cast<float>(v)) *
+                                         frame_.depth_z(u, v));
+      const Pinhole::Pixel at = frame_.camera.pixel_of(T_view_object * p);
       bool on_model = false;
       for (int dv = -1; dv <= 1; ++dv)
         for (int du = -1; du <= 1; ++du) on_model = on_model || track.view.z(at.u + du, at.v + dv) > 0;
-      if (!on_model) frame_.owners(u, v) = kEdge;
+      if (!on_model || !track.bounds.contains(to_double(p))) frame_.owners(u, v) = kEdge;
     }
   }
 }

@@ -8,7 +8,8 @@ namespace {
 constexpr int kMaxLabels = 64;
 constexpr int kLeastOverlap_px = 25;
 constexpr int kLeastRest_px = 250;
-constexpr int kMatureFrames = 10;  // younger models may grow at any pace
+constexpr int kMatureFrames = 10;    // younger models may grow at any pace
+constexpr int kDoubtfulFrames = 10;  // for so long, what a whole segment gained may be something else
 
 struct Claims {
   int overlap[kMaxLabels][kMaxObjects]{};
@@ -80,12 +81,14 @@ std::uint8_t nearest_model(const Claims& claims, std::span<const Track> tracks, 
 }
 
 // A mature object shows new surface little by little. One that gains more at once, beyond what its model
-// would fill, has something else hanging on it: a hand.
+// would fill, has something else hanging on it: a hand. But a hand has an arm that goes on to the edge of the
+// view; what stays and ends within the view is the object's own.
 bool outgrown(const Track& track, const Segment& segment, int image_pixels) {
   const bool mature = track.integrated >= kMatureFrames || track.from_background;
   const int gain = track.owned_pixels + track.owned_pixels / 5;
   const int known = gain > track.view_pixels ? gain : track.view_pixels;
-  return mature && segment.pixels > known + image_pixels / 1000;
+  const bool stays = track.divided_run > kDoubtfulFrames && !segment.touches_border;
+  return mature && !stays && segment.pixels > known + image_pixels / 1000;
 }
 
 // The one claimant of a segment that it may keep whole; tracks.size() when the segment has to be divided.

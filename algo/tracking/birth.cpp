@@ -66,7 +66,7 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.birth_position = footprint.T_camera_object.t;
   track.has_moved = false;
   track.from_background = false;
-  track.owned_pixels = track.cut_balance = track.double_run = track.lost_run = 0;
+  track.owned_pixels = track.divided_run = track.cut_balance = track.double_run = track.lost_run = 0;
   track.good_poses = track.poor_run = track.integrated = track.still_run = track.published_gap = 0;
   track.last_good_t_s = t_s;
   track.sides = SeenSides{};

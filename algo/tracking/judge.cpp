@@ -46,6 +46,10 @@ float agreeing(const Agreement& a) {
   return seen > 0 ? a.same / seen : 0.0f;
 }
 
+// A part of what was modelled is not there any more, an arm that had carried the object, and the rest fits as
+// well as ever: the pose is good, and the model has to change.
+bool part_is_gone(const Agreement& a) { return a.explained > 0.9f && agreeing(a) > 0.3f; }
+
 constexpr int kHabitFrames = 15;  // before it counts
 constexpr float kHabitPace = 0.05f;
 constexpr float kHabitAgree = 0.85f;  // of what is usual: least agreement
@@ -59,10 +63,14 @@ void learn_one(float value, int& frames, float& habit) {
 
 }  // namespace
 
-bool Habit::broken_by(const AlignResult& result, const Agreement& a) const {
-  if (frames_ >= kHabitFrames && agreeing(a) < kHabitAgree * agree_) return true;
+bool Habit::broken_by_color(const AlignResult& result) const {
   return colored_frames_ >= kHabitFrames &&
          result.color.sigma > kHabitColorTimes * color_sigma_ + kHabitColorMore;
+}
+
+bool Habit::broken_by(const AlignResult& result, const Agreement& a) const {
+  if (broken_by_color(result)) return true;
+  return frames_ >= kHabitFrames && agreeing(a) < kHabitAgree * agree_ && !part_is_gone(a);
 }
 
 void Habit::learn(const AlignResult& result, const Agreement& a) {
@@ -78,8 +86,8 @@ Verdict judge(const AlignResult& result, const Agreement& a, const Habit& habit)
 Verdict judge(const AlignResult& result, const Agreement& a) {
   if (!result.solved || a.model_pixels < 20 || result.depth.inliers < 30) return Verdict::kLost;
   const float agree = agreeing(a);
-  if (a.same + a.through < kLeastInSight || agree < 0.35f) return Verdict::kLost;
-  if (agree < 0.65f || a.explained < 0.35f) return Verdict::kPoor;
+  if (a.same + a.through < kLeastInSight || agree < 0.3f) return Verdict::kLost;
+  if ((agree < 0.65f && !part_is_gone(a)) || a.explained < 0.35f) return Verdict::kPoor;
   return Verdict::kGood;
 }
 

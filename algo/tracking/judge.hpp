@@ -31,6 +31,7 @@ enum class Verdict { kGood, kPoor, kLost };
 class Habit {
  public:
   bool broken_by(const AlignResult& result, const Agreement& agreement) const;
+  bool broken_by_color(const AlignResult& result) const;
   // Also from poses that broke it: what stays different (the lamps went out, a cloth lies on it) becomes the
   // habit before the track would be given up.
   void learn(const AlignResult& result, const Agreement& agreement);

@@ -1,27 +1,32 @@
 #include "algo/tracking/recover.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "algo/core/scalar_math.hpp"
 
 namespace st {
 
-void Search::start(std::size_t lost_track, const Unexplained& candidate, bool at_last_place) {
+void Search::start(std::size_t lost_track, const Unexplained& candidate, Where there) {
   *this = Search{};
   running = true;
-  in_place = at_last_place;
+  where = there;
   track = lost_track;
   box = candidate.box;
   centroid = candidate.centroid;
 }
 
 void Search::note(double score, const Pose& T_anchor_object) {
-  if (score > best[0].score) {
-    best[1] = best[0];
-    best[0] = {score, T_anchor_object};
-  } else if (score > best[1].score) {
-    best[1] = {score, T_anchor_object};
-  }
+  Found fresh{score, T_anchor_object};
+  for (Found& kept : best)
+    if (fresh.score > kept.score) std::swap(fresh, kept);
+}
+
+const Search::Found& Search::best_of_all() const {
+  const Found* most = best;
+  for (const Found& found : best)
+    if (found.score > most->score) most = &found;
+  return *most;
 }
 
 bool size_fits(const Bounds& model, const Bounds& candidate, bool touches_border) {
@@ -59,6 +64,12 @@ double fit_score(const AlignResult& result, const Agreement& a) {
   const double color =
       result.color.used > 30 ? 1.0 / (1.0 + result.color.sigma * result.color.sigma / 200.0) : 0.5;
   return a.same * a.explained * (0.5 + 0.5 * color);
+}
+
+bool is_found(const AlignResult& result, const Agreement& a, const Habit& habit) {
+  constexpr float kExplained = 0.75f, kMostLookedThrough = 0.15f;
+  return judge(result, a) == Verdict::kGood && a.explained >= kExplained &&
+         a.through <= kMostLookedThrough * (a.same + a.through) && !habit.broken_by_color(result);
 }
 
 }  // namespace st

@@ -32,6 +32,9 @@ struct Bounds {
       if (p[i] > high[i]) high[i] = p[i];
     }
   }
+  bool contains(const Vec3& p) const {
+    return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+  }
   Vec3 centre() const { return (low + high) * 0.5; }
   Vec3 size() const { return high - low; }
 };
@@ -55,6 +58,7 @@ struct Track {
   bool left_view = false;  // went out through the edge of the image
   bool from_background = false;
   int owned_pixels = 0;  // in the last frame in which it had any
+  int divided_run = 0;   // frames in a row in which something hung together with it
   int cut_balance =
       0;  // frames in which the edge of the view may have cut it, less those in which it did not
   Volume volume;

@@ -70,7 +70,15 @@ TEST(Judge, AModelThatIsLookedThroughIsNotThere) {
 TEST(Judge, HalfAndHalfIsPoor) {
   agreement.same = 0.5f;
   agreement.through = 0.45f;
+  agreement.explained = 0.7f;
   check(Verdict::kPoor);
+}
+
+TEST(Judge, AnArmThatLetsGoLeavesAGoodPose) {
+  agreement.same = 0.4f;
+  agreement.through = 0.55f;
+  agreement.explained = 0.95f;
+  check(Verdict::kGood);
 }
 
 TEST(Judge, PointsThatTheModelDoesNotExplainMakeItPoor) {
