@@ -168,6 +168,7 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
   AlignInput in = alignment_of(track, k);
   in.terms.color = in.terms.color && step.color_term;
   in.point_stride = step.point_stride;
+  // The paper's alignment knows no floor, and needs nothing to leave it.
   if (config_.tracker == TrackerKind::kListing1) {
     track.aligned = align_closest_point(in, clouds_[k], scratch_);
     return;
