@@ -173,7 +173,9 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
     track.aligned = align_closest_point(in, clouds_[k], scratch_);
     return;
   }
+  expect_heading(track, in);
   track.aligned = align(in, scratch_);
+  defend_heading(track, in);
   if (in.floor.on && step.point_stride == 1) leave_floor(track, in);
 }
 
@@ -280,6 +282,8 @@ void ObjectTracker::judge_one(Track& track) {
   ++track.good_poses;
   track.last_good_t_s = frame_.input->t_s;
   track.T_last_good = track.T_camera_object;
+  if (track.planar && support_.found)
+    track.drive.add(frame_.input->device_t_s, support_.on_floor(track.T_camera_object), track.heading_doubt);
   if (norm(track.T_camera_object.t - track.birth_position) > 0.008) track.has_moved = true;
   track.yaw_source = yaw_source_of(track.aligned, support_.up);
 }
@@ -295,7 +299,7 @@ void ObjectTracker::integrate_all(const LadderStep& step) {
     if (!track.active() || track.state != TrackState::kGood || !step.integrate) continue;
     // While the turn is unseen, a new view would smear over the model for ever. The first frames have nothing
     // to smear.
-    if (track.yaw_source == YawSource::kNone && track.integrated > 30) continue;
+    if ((track.yaw_source == YawSource::kNone || track.heading_doubt) && track.integrated > 30) continue;
     std::uint8_t& fused = track.sides.side_of(track.T_camera_object);
     const bool contradicted = track.agreement.through > kContradicted;
     if (fused < kFramesPerSide || track.integrated < kFirstFrames || contradicted) {

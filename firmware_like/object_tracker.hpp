@@ -78,6 +78,8 @@ class ObjectTracker {
   void update_support();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
   void judge_one(Track& track);
+  void expect_heading(Track& track, AlignInput& in) const;
+  void defend_heading(Track& track, const AlignInput& in);
   void leave_floor(Track& track, const AlignInput& held);
   void return_to_floor(Track& track);
   AlignInput alignment_of(const Track& track, std::size_t k) const;

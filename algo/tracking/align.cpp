@@ -64,6 +64,17 @@ void add_floor_prior(const AlignInput& in, const Pose& T, NormalEquations& eq) {
   eq.add(Jb, dot(lean, b), w);
 }
 
+// Chords of neighbouring frames overlap: so many say as much as one.
+constexpr double kOverlappingChords = 10;
+
+void add_heading_prior(const AlignInput& in, const Pose& T, NormalEquations& eq) {
+  const Vec3& up = in.floor.up_camera;
+  const double turned = dot(rotation_to_vector(T.R * in.prior.mean.R.transposed()), up);
+  const double J[6] = {0, 0, 0, up.x, up.y, up.z};
+  eq.add(J, turned - in.heading.turn_rad,
+         1.0 / (kOverlappingChords * in.heading.sigma_rad * in.heading.sigma_rad));
+}
+
 void copy_pose_block(const double (&full)[kN * kN], double (&pose)[36]) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) pose[6 * i + j] = full[kN * i + j];
@@ -152,6 +163,7 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
       }
       all = data;
       if (in.terms.motion) add_motion_prior(in, T, all);
+      if (in.terms.motion && in.heading.on) add_heading_prior(in, T, all);
       if (in.terms.floor && in.floor.on) add_floor_prior(in, T, all);
       all.mirror();
       const Step step = solve(all);

@@ -29,6 +29,12 @@ struct FloorPrior {
   double sigma_height_m = 0.001, sigma_tilt_rad = 0.0015;
 };
 
+// The heading that the object's way of driving implies, as a turn about the vertical from prior.mean.
+struct HeadingPrior {
+  bool on = false;
+  double turn_rad = 0, sigma_rad = 0;
+};
+
 struct AlignTerms {
   bool contour = true, color = true, floor = true, motion = true;
 };
@@ -42,6 +48,7 @@ struct AlignInput {
   Vec3 pivot;  // camera frame
   MotionPrior prior;
   FloorPrior floor;
+  HeadingPrior heading;  // counts where terms.motion does, and with a floor
   AlignTerms terms;
   double largest_start_error_m = 0.03;  // sets the coarsest gate
   int point_stride = 1;                 // a late loop looks at fewer points

@@ -69,6 +69,9 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.owned_pixels = track.divided_run = track.cut_balance = track.double_run = track.lost_run = 0;
   track.good_poses = track.poor_run = track.integrated = track.still_run = track.published_gap = 0;
   track.last_good_t_s = t_s;
+  track.drive.reset();
+  track.heading = {};
+  track.heading_doubt = false;
   track.sides = SeenSides{};
   track.habit = Habit{};
   track.planar = footprint.on_floor;

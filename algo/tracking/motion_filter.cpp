@@ -18,6 +18,11 @@ void MotionFilter::leave_plane() {
   for (const int i : {2, 3, 4}) axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
 }
 
+void MotionFilter::turn(const Mat3& by) {
+  pose_.R = orthonormalized(by * pose_.R);
+  corrected_.R = orthonormalized(by * corrected_.R);
+}
+
 Pose MotionFilter::motion_at(const Vec3& velocity_mps, const Vec3& angular_velocity_rps, double dt_s) const {
   const Mat3 R_camera_reference = R_reference_camera_.transposed();
   const Mat3 dR = rotation_from_vector(R_camera_reference * (angular_velocity_rps * dt_s));

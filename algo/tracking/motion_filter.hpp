@@ -29,6 +29,9 @@ class MotionFilter {
   // Height and lean (the reference axes' z is up) are unknown anew.
   void leave_plane();
 
+  // The orientation was wrong by this turn (camera frame) all along: no part of it is motion.
+  void turn(const Mat3& by);
+
   // Moves the estimate on to time t_s.
   void predict(double t_s, const MotionNoise& noise);
 

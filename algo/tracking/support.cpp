@@ -19,6 +19,12 @@ Support make_support(const Vec3& up, double d, bool found) {
   return support;
 }
 
+Pose2 Support::on_floor(const Pose& T_camera_object) const {
+  const Mat3 R_floor_camera = R_camera_floor.transposed();
+  const Vec3 p = R_floor_camera * T_camera_object.t;
+  return {p.x, p.y, to_roll_pitch_yaw(R_floor_camera * T_camera_object.R).z};
+}
+
 std::uint8_t& SeenSides::side_of(const Pose& T_camera_object) {
   const Vec3 camera = normalized(T_camera_object.inverse().t);
   const double azimuth = (arc_tan2(camera.y, camera.x) + kPi) / (2 * kPi) * kAzimuths;

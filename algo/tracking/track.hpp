@@ -3,6 +3,7 @@
 
 #include "algo/core/records.hpp"
 #include "algo/tracking/align.hpp"
+#include "algo/tracking/drive_model.hpp"
 #include "algo/tracking/judge.hpp"
 #include "algo/tracking/model_view.hpp"
 #include "algo/tracking/motion_filter.hpp"
@@ -18,6 +19,8 @@ struct Support {
   Mat3 R_camera_floor{};  // columns: x (the camera's axis laid on the floor), y, z = up
 
   double height_of(const Vec3& p) const { return dot(up, p) + d; }
+  // Place and heading along the floor's axes, which begin at the camera.
+  Pose2 on_floor(const Pose& T_camera_object) const;
 };
 Support make_support(const Vec3& up, double d, bool found);
 
@@ -64,7 +67,10 @@ struct Track {
   Volume volume;
   Bounds bounds;
   MotionFilter motion;
-  Pose T_camera_object;  // newest estimate, whatever its state
+  DriveModel drive;
+  ExpectedHeading heading;     // in this frame, from its motion
+  bool heading_doubt = false;  // what it looks like contradicts that
+  Pose T_camera_object;        // newest estimate, whatever its state
   Pose T_last_good;
   TrackState state = TrackState::kLost;
 

@@ -3,6 +3,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include "algo/core/simd.hpp"
+#include "tests/algo/tracking/flat_view.hpp"
 #include "tests/algo/tracking/painted_ellipsoid.hpp"
 #include "tests/support/bound.hpp"
 
@@ -101,6 +102,28 @@ TEST(Align, DividesTheWorkOfALateLoopWithoutLosingThePose) {
   CHECK_COMPARE(static_cast<std::size_t>(all), >, PointTable::kMost / 4);
   CHECK_COMPARE(static_cast<std::size_t>(result.depth.tried), <=, PointTable::kMost / 4);
   CHECK_COMPARE(distance_mm(result.T_camera_object, truth), <, 1.0);
+}
+
+TEST(Align, AHeadingFromTheMotionTurnsWhatThePictureLeavesOpen) {
+  AlignInput in;
+  const FlatView flat({60, 40, 100, 80}, {0, 0, -1}, -1.0f);  // a plane: its turn about the axis is unseen
+  std::vector<ObservedPoint> points;
+  std::vector<float> depth(160 * 120, 1.0f);
+  for (int v = 42; v < 78; v += 2)
+    for (int u = 62; u < 98; u += 2)
+      points.push_back({kSmallCamera.ray(static_cast<float>(u), static_cast<float>(v)), -1.0f});
+  in.points = points;
+  in.view = flat.view;
+  in.depth_z = {depth.data(), 160, 120};
+  in.camera = kSmallCamera;
+  in.start = in.prior.mean = flat.view.T_camera_object;
+  in.pivot = {0, 0, 1};
+  for (int i = 0; i < 6; ++i) in.prior.information[7 * i] = i < 3 ? 1e6 : 1.0;
+  in.floor.up_camera = {0, 0, -1};
+  in.terms = {false, false, false, true};
+  in.heading = {true, 0.15, 0.02};
+  const Mat3 turned = align(in, work.scratch).T_camera_object.R;
+  DOUBLES_EQUAL(0.15, dot(rotation_to_vector(turned), in.floor.up_camera), 0.005);
 }
 
 TEST(Align, TheOutlineAloneHoldsAFlatThingSideways) {

@@ -139,6 +139,19 @@ TEST(MotionFilter, WhatLeavesThePlaneMayRiseAndLeanButKeepsItsWay) {
   DOUBLES_EQUAL(velocity.x, filter.velocity_mps().x, 0);
 }
 
+TEST(MotionFilter, ACorrectedMistakeIsNoMotion) {
+  MotionFilter filter = after(30);
+  const Vec3 rates = filter.angular_velocity_rps(), out = filter.output().angular_velocity_rps;
+  const Mat3 by = rotation_from_vector({0.1, 0.3, -0.2});
+  filter.turn(by);
+  DOUBLES_EQUAL(0, rotation_angle(filter.pose().R * (by * truth(30 * kPeriod_s).R).transposed()), 1e-3);
+  filter.predict(31 * kPeriod_s, {});
+  filter.correct({by * truth(31 * kPeriod_s).R, truth(31 * kPeriod_s).t}, kSure.m);
+  DOUBLES_EQUAL(0, norm(filter.angular_velocity_rps() - rates),
+                0.35);  // the axis of its turn was turned, too
+  DOUBLES_EQUAL(0, norm(filter.output().angular_velocity_rps - out), 0.35);
+}
+
 TEST(MotionFilter, CoastingFadesAndRestStops) {
   MotionFilter filter = after(12);
   filter.coast(0.5);
