@@ -20,7 +20,9 @@ Loop::Loop(const LoopParts& parts, const LoopConfig& config)
 LoopEnd Loop::run() {
   ObjectTracker& tracker = parts_.tracker;
   while (acquire()) {
-    tracker.segment(input_, report_);
+    tracker.preprocess(input_, report_);
+    stages_.done(Stage::kPreprocess);
+    tracker.segment();
     stages_.done(Stage::kSegment);
     tracker.predict();
     stages_.done(Stage::kPredict);

@@ -77,15 +77,19 @@ std::span<ObservedPoint> ObjectTracker::points_of(std::size_t k) {
   return points_.subspan(k * kMaxPoints, kMaxPoints);
 }
 
-void ObjectTracker::segment(const FrameInput& input, FrameReport& report) {
+void ObjectTracker::preprocess(const FrameInput& input, FrameReport& report) {
   events_.clear();
   frame_.input = &input;
   frame_.color = {input.color};
   frame_.has_color = calibration_.has_color && !input.color.empty();
   frame_.color_lag_s = input.color_device_t_s - input.device_t_s;
-  segmentation_ = &segmenter_.process(input, frame_.owners);
-  report.invalid_pixels = segmentation_->depth.invalid_pixels;
-  to_metres(segmenter_.tables(), segmentation_->depth.code, frame_.depth_z);
+  const CleanDepth& depth = segmenter_.preprocess(input);
+  report.invalid_pixels = depth.invalid_pixels;
+  to_metres(segmenter_.tables(), depth.code, frame_.depth_z);
+}
+
+void ObjectTracker::segment() {
+  segmentation_ = &segmenter_.segment(*frame_.input, frame_.owners);
   update_support();
 }
 

@@ -43,7 +43,8 @@ class ObjectTracker {
   void plan_memory(MemoryPlan& plan);
   void start();
 
-  void segment(const FrameInput& input, FrameReport& report);
+  void preprocess(const FrameInput& input, FrameReport& report);
+  void segment();
   void predict();
   void render();
   void associate_pixels();

@@ -63,9 +63,13 @@ void Segmenter::average_gravity(const FrameInput& frame) {
   ++gravity_frames_;
 }
 
-const Segmentation& Segmenter::process(const FrameInput& frame, ImageView<const std::uint8_t> owner) {
+const CleanDepth& Segmenter::preprocess(const FrameInput& frame) {
   const ImageView<std::uint16_t> code{code_.data(), width_, height_};
-  out_.depth = preprocess(tables_, frame.depth, code, {stored_.data(), width_, height_});
+  out_.depth = st::preprocess(tables_, frame.depth, code, {stored_.data(), width_, height_});
+  return out_.depth;
+}
+
+const Segmentation& Segmenter::segment(const FrameInput& frame, ImageView<const std::uint8_t> owner) {
   out_.labels = {labels_.data(), width_, height_};
   out_.classes = background_.classes();
   out_.segments.clear();
@@ -77,7 +81,7 @@ const Segmentation& Segmenter::process(const FrameInput& frame, ImageView<const 
     learn();
     return out_;
   }
-  background_.update(code, owner, out_.floor);
+  background_.update(out_.depth.code, owner, out_.floor);
   if (view_has_changed()) {
     background_.restart();
     protos_.clear();

@@ -54,9 +54,11 @@ class Segmenter {
   // Starts anew. `calibration` is the one bind() was called with.
   void configure(const Calibration& calibration, const SegmenterSettings& settings = {});
 
-  // One frame. `owner` (may be empty): 0 none, else track slot + 1, from the frame before: those pixels never
-  // become background. The views in the result hold until the next call.
-  const Segmentation& process(const FrameInput& frame, ImageView<const std::uint8_t> owner);
+  // One frame, in two steps: stored values to codes and metres on an undistorted grid, then what moved.
+  // `owner` (may be empty): 0 none, else track slot + 1, from the frame before: those pixels never become
+  // background. The views in the results hold until the next call.
+  const CleanDepth& preprocess(const FrameInput& frame);
+  const Segmentation& segment(const FrameInput& frame, ImageView<const std::uint8_t> owner);
 
   const DepthTables& tables() const { return tables_; }
   ImageView<const std::uint16_t> background_code8() const {

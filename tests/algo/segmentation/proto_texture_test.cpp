@@ -32,7 +32,8 @@ class Rig {
     input.depth = {frame.raw.data(), kWidth, kHeight};
     input.color = {rgb_.data(), 3 * kWidth, kHeight};
     input.color_is_new = true;
-    return segmenter_.process(input, {}).has_released;
+    segmenter_.preprocess(input);
+    return segmenter_.segment(input, {}).has_released;
   }
 
  private:

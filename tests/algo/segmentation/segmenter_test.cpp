@@ -30,7 +30,8 @@ class Rig {
       for (int u = width - blind_; u < width; ++u) raw_[static_cast<std::size_t>(v * width + u)] = 2047;
     FrameInput input;
     input.depth = {raw_.data(), width, height};
-    out_ = &segmenter_.process(input, {owner_.data(), camera_.depth.width, camera_.depth.height});
+    segmenter_.preprocess(input);
+    out_ = &segmenter_.segment(input, {owner_.data(), camera_.depth.width, camera_.depth.height});
     return *out_;
   }
   // Intersection over union of all labels with what the truth calls `label` and the sensor sees.

@@ -30,7 +30,8 @@ TEST(ToyTable, WhatIsTakenHoldOfIsReleasedAndTheTableIsNot) {
     }
     FrameInput input;
     input.depth = {depth.data(), 320, 240};
-    const Segmentation& s = segmenter.process(input, {});
+    segmenter.preprocess(input);
+    const Segmentation& s = segmenter.segment(input, {});
     if (i == 20) {
       CHECK(s.floor.found);
       DOUBLES_EQUAL(0.379, s.floor.d, 0.01);  // the camera above the table
