@@ -14,6 +14,7 @@ constexpr double kMisfit_rad = 0.2;
 constexpr double kLateralNoise_m = 0.003, kOffset_m = 0.05;  // of a window; of the turning centre, a priori
 constexpr double kLeastTravel_m = 0.25, kMostLateral = 0.09;
 constexpr double kLongest_s = 1.0, kLeastWay_m = 0.10, kMostTurn_rad = 0.4;
+constexpr double kChord_m = 0.05, kMostBend_rad = 0.3, kChordSigma_rad = 0.1;
 constexpr double kPosition_m = 0.002, kLeastSigma_rad = 0.02;
 
 }  // namespace
@@ -44,6 +45,7 @@ void DriveModel::learn(const Motion& window) {
     if (misfits_ > kMostMisfits) reset();
     if (misfit) return;
   }
+  if (recognised()) backward_ = axis().cos * window.x_m + axis().sin * window.y_m < 0;
   const double a[3] = {window.x_m, window.y_m, window.turn_rad};
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) scatter_[r][c] = kForget * scatter_[r][c] + a[r] * a[c];
@@ -85,29 +87,54 @@ DriveModel::Axis DriveModel::axis() const {
 
 bool DriveModel::recognised() const { return travel_m_ >= kLeastTravel_m && axis().lateral < kMostLateral; }
 
-ExpectedHeading DriveModel::expect(double t_s, const Pose2& predicted) const {
-  ExpectedHeading out;
-  if (recent_.empty() || !recognised()) return out;
+// From the headings on the way, if they changed little: the motion along them, taken together, has to lie on
+// the axis.
+ExpectedHeading DriveModel::expect_by_headings(double t_s, const Pose2& predicted, const Axis& drive) const {
   Motion motion;
   const Pose2* later = &predicted;
-  for (std::size_t i = recent_.size(); i > 0; --i) {
+  for (std::size_t i = recent_.size(); i > 0 && motion.length_m() < kLeastWay_m; --i) {
     const Sample& sample = recent_[i - 1];
-    if (t_s - sample.t_s > kLongest_s) return out;
     motion.add_step(sample.pose, *later);
     later = &sample.pose;
-    if (std::fabs(motion.turn_rad) > kMostTurn_rad) return out;
-    if (motion.length_m() >= kLeastWay_m) break;
+    if (t_s - sample.t_s > kLongest_s || std::fabs(motion.turn_rad) > kMostTurn_rad) return {};
   }
-  if (motion.length_m() < kLeastWay_m) return out;
-  const Axis drive = axis();
+  if (motion.length_m() < kLeastWay_m) return {};
   const double noise = 1.5 * kPosition_m / motion.length_m();
   // Of the windows' lateral motion, what their own noise does not explain.
   const double slip2 =
       drive.lateral * drive.lateral - kLateralNoise_m * kLateralNoise_m / (kWindow_m * kWindow_m);
-  out.known = true;
-  out.yaw_rad = wrap_angle(predicted.yaw + heading_error(motion, drive));
-  out.sigma_rad = std::sqrt(noise * noise + (slip2 > 0 ? slip2 : 0.0) + kLeastSigma_rad * kLeastSigma_rad);
-  return out;
+  return {true, wrap_angle(predicted.yaw + heading_error(motion, drive)),
+          std::sqrt(noise * noise + (slip2 > 0 ? slip2 : 0.0) + kLeastSigma_rad * kLeastSigma_rad)};
+}
+
+// From the places alone, when the headings spin: two chords, one after the other, give the direction and how
+// it changes.
+ExpectedHeading DriveModel::expect_by_places(double t_s, const Pose2& predicted, const Axis& drive) const {
+  double direction[2];
+  Pose2 end = predicted;
+  int chords = 0;
+  for (std::size_t i = recent_.size(); i > 0 && chords < 2; --i) {
+    const Sample& sample = recent_[i - 1];
+    if (t_s - sample.t_s > kLongest_s) return {};
+    const double x = end.x - sample.pose.x, y = end.y - sample.pose.y;
+    if (x * x + y * y < kChord_m * kChord_m) continue;
+    direction[chords++] = arc_tan2(y, x);
+    end = sample.pose;
+  }
+  if (chords < 2) return {};
+  const double bend = wrap_angle(direction[0] - direction[1]);
+  if (std::fabs(bend) > kMostBend_rad) return {};
+  double off = wrap_angle(direction[0] + 0.5 * bend - arc_tan2(drive.sin, drive.cos) - predicted.yaw);
+  // Forward or backward: whichever it did lately, since headings that spin say nothing.
+  if (backward_) off = wrap_angle(off + kPi);
+  return {true, wrap_angle(predicted.yaw + off), kChordSigma_rad};
+}
+
+ExpectedHeading DriveModel::expect(double t_s, const Pose2& predicted) const {
+  if (recent_.empty() || !recognised()) return {};
+  const Axis drive = axis();
+  const ExpectedHeading by_headings = expect_by_headings(t_s, predicted, drive);
+  return by_headings.known ? by_headings : expect_by_places(t_s, predicted, drive);
 }
 
 }  // namespace st

@@ -50,13 +50,16 @@ class DriveModel {
   };
   void learn(const Motion& window);
   Axis axis() const;
+  ExpectedHeading expect_by_headings(double t_s, const Pose2& predicted, const Axis& drive) const;
+  ExpectedHeading expect_by_places(double t_s, const Pose2& predicted, const Axis& drive) const;
   static double heading_error(const Motion& motion, const Axis& axis);
 
   FixedVector<Sample, 32> recent_;
   Motion window_;
   double scatter_[3][3]{};  // of (along x, along y, turn), one a window
   double travel_m_ = 0;
-  int misfits_ = 0;  // windows in a row that contradict the axis
+  bool backward_ = false;  // against the axis, when it last moved
+  int misfits_ = 0;        // windows in a row that contradict the axis
 };
 
 }  // namespace st
