@@ -50,6 +50,7 @@ void ObjectTracker::defend_heading(Track& track, const AlignInput& in) {
   if (!agrees || look_score(expected) < kAsGood * look_score(track.aligned)) return;
   track.drive.turn_recent(-off);
   track.motion.turn(turn);
+  track.motion.set_turn_rate(track.heading.rate_rps);
   track.aligned = expected;
 }
 

@@ -8,8 +8,8 @@ namespace st {
 namespace {
 
 constexpr double kWindow_m = 0.04, kWindowTurn_rad = 0.25;
-constexpr double kForget = 0.99;  // a window; what an object drives like may change when somebody takes it up
-constexpr int kMostMisfits = 12;  // half a metre of driving another way
+constexpr double kForget = 0.998;  // a window: the axis must not follow a heading that slides
+constexpr int kMostMisfits = 12;   // half a metre of driving another way
 constexpr double kMisfit_rad = 0.2;
 constexpr double kLateralNoise_m = 0.003, kOffset_m = 0.05;  // of a window; of the turning centre, a priori
 constexpr double kLeastTravel_m = 0.25, kMostLateral = 0.09;
@@ -92,10 +92,12 @@ bool DriveModel::recognised() const { return travel_m_ >= kLeastTravel_m && axis
 ExpectedHeading DriveModel::expect_by_headings(double t_s, const Pose2& predicted, const Axis& drive) const {
   Motion motion;
   const Pose2* later = &predicted;
+  double begin_s = t_s;
   for (std::size_t i = recent_.size(); i > 0 && motion.length_m() < kLeastWay_m; --i) {
     const Sample& sample = recent_[i - 1];
     motion.add_step(sample.pose, *later);
     later = &sample.pose;
+    begin_s = sample.t_s;
     if (t_s - sample.t_s > kLongest_s || std::fabs(motion.turn_rad) > kMostTurn_rad) return {};
   }
   if (motion.length_m() < kLeastWay_m) return {};
@@ -104,13 +106,14 @@ ExpectedHeading DriveModel::expect_by_headings(double t_s, const Pose2& predicte
   const double slip2 =
       drive.lateral * drive.lateral - kLateralNoise_m * kLateralNoise_m / (kWindow_m * kWindow_m);
   return {true, wrap_angle(predicted.yaw + heading_error(motion, drive)),
-          std::sqrt(noise * noise + (slip2 > 0 ? slip2 : 0.0) + kLeastSigma_rad * kLeastSigma_rad)};
+          std::sqrt(noise * noise + (slip2 > 0 ? slip2 : 0.0) + kLeastSigma_rad * kLeastSigma_rad),
+          motion.turn_rad / (t_s - begin_s)};
 }
 
 // From the places alone, when the headings spin: two chords, one after the other, give the direction and how
 // it changes.
 ExpectedHeading DriveModel::expect_by_places(double t_s, const Pose2& predicted, const Axis& drive) const {
-  double direction[2];
+  double direction[2], middle_s[2], end_s = t_s;
   Pose2 end = predicted;
   int chords = 0;
   for (std::size_t i = recent_.size(); i > 0 && chords < 2; --i) {
@@ -118,8 +121,10 @@ ExpectedHeading DriveModel::expect_by_places(double t_s, const Pose2& predicted,
     if (t_s - sample.t_s > kLongest_s) return {};
     const double x = end.x - sample.pose.x, y = end.y - sample.pose.y;
     if (x * x + y * y < kChord_m * kChord_m) continue;
-    direction[chords++] = arc_tan2(y, x);
+    direction[chords] = arc_tan2(y, x);
+    middle_s[chords++] = 0.5 * (end_s + sample.t_s);
     end = sample.pose;
+    end_s = sample.t_s;
   }
   if (chords < 2) return {};
   const double bend = wrap_angle(direction[0] - direction[1]);
@@ -127,7 +132,7 @@ ExpectedHeading DriveModel::expect_by_places(double t_s, const Pose2& predicted,
   double off = wrap_angle(direction[0] + 0.5 * bend - arc_tan2(drive.sin, drive.cos) - predicted.yaw);
   // Forward or backward: whichever it did lately, since headings that spin say nothing.
   if (backward_) off = wrap_angle(off + kPi);
-  return {true, wrap_angle(predicted.yaw + off), kChordSigma_rad};
+  return {true, wrap_angle(predicted.yaw + off), kChordSigma_rad, bend / (middle_s[0] - middle_s[1])};
 }
 
 ExpectedHeading DriveModel::expect(double t_s, const Pose2& predicted) const {

@@ -13,6 +13,7 @@ namespace st {
 struct ExpectedHeading {
   bool known = false;
   double yaw_rad = 0, sigma_rad = 0;
+  double rate_rps = 0;  // how fast it turns
 };
 
 class DriveModel {

@@ -23,6 +23,14 @@ void MotionFilter::turn(const Mat3& by) {
   corrected_.R = orthonormalized(by * corrected_.R);
 }
 
+void MotionFilter::set_turn_rate(double rate_rps) {
+  const double pp = axis_[5].pp;
+  axis_[5] = kUnknownTurn;
+  axis_[5].pp = pp;
+  axis_[5].rate = rate_rps;
+  output_.angular_velocity_rps.z = rate_rps;
+}
+
 Pose MotionFilter::motion_at(const Vec3& velocity_mps, const Vec3& angular_velocity_rps, double dt_s) const {
   const Mat3 R_camera_reference = R_reference_camera_.transposed();
   const Mat3 dR = rotation_from_vector(R_camera_reference * (angular_velocity_rps * dt_s));

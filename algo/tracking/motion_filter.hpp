@@ -31,6 +31,8 @@ class MotionFilter {
 
   // The orientation was wrong by this turn (camera frame) all along: no part of it is motion.
   void turn(const Mat3& by);
+  // How fast it turns about the reference's z axis was wrong as well.
+  void set_turn_rate(double rate_rps);
 
   // Moves the estimate on to time t_s.
   void predict(double t_s, const MotionNoise& noise);
