@@ -13,13 +13,6 @@ constexpr int kCandidatePatience = 6;  // frames without a good pose
 constexpr int kTrackedPatience = 8;    // then the search begins
 constexpr int kStillCandidate = 90;    // good poses without motion: not a mover
 
-// Share of the box that lies inside the image.
-double share_inside(const Rect& box, int width, int height) {
-  const double area = static_cast<double>(box.width()) * box.height();
-  const Rect in = box.clipped(width, height);
-  return area > 0 ? static_cast<double>(in.width()) * in.height() / area : 0.0;
-}
-
 }  // namespace
 
 void ObjectTracker::log(EventKind kind, int object, double a, double b) {

@@ -8,7 +8,7 @@
 namespace st {
 namespace {
 
-constexpr int kYawsPerFrame = 6;
+constexpr int kYawsPerFrame = 9;
 constexpr double kHeldTurn_rad = 0.002;
 constexpr int kSearchPatience = 5;
 constexpr int kInPlaceFrames = 90;  // for so long a lost object is expected where it was
@@ -16,6 +16,11 @@ constexpr int kRivalFrames = 90;    // good poses of a candidate that may yet tu
 constexpr int kMissedFrames = 600;  // for so long such a candidate has to wait for its number
 
 }  // namespace
+
+std::uint8_t ObjectTracker::searched_owner() const {
+  return static_cast<std::uint8_t>((search_.where == Search::Where::kRival ? search_.rival : search_.track) +
+                                   1);
+}
 
 // How well the pose fits once the alignment has moved it; `turn` says whether it may turn it, too. A first
 // guess of the place is centimetres off, and what that does to the depth would turn it away from the right
@@ -62,6 +67,10 @@ void ObjectTracker::refine(Search::Found& found, const Pose& T_camera_anchor) {
     if (!(score > 0)) return;
     pose = track.aligned.T_camera_object;
   }
+  // Half of it has to be in sight: a corner of a robot looks like any corner.
+  const Rect box = image_box(track.bounds, pose, frame_.camera, 0);
+  if (share_inside(box, frame_.camera.width, frame_.camera.height) < 0.55 || track.agreement.same < 0.45f)
+    return;
   // In place it was nearly there a moment ago; elsewhere it has to be the object beyond doubt.
   const bool found_again = search_.where == Search::Where::kInPlace
                                ? judge(track.aligned, track.agreement, track.habit) == Verdict::kGood
@@ -79,7 +88,6 @@ void ObjectTracker::finish_search(const Pose& T_camera_anchor) {
     if (search_.where == Search::Where::kSegment) refuse(search_.box, search_.track);
     return;  // else it may still come out from behind what hides it
   }
-  if (search_.where == Search::Where::kRival) evict(tracks_[search_.rival]);
   log(EventKind::kRecovered, track.id, frame_.input->t_s - track.last_good_t_s);
   track.phase = Track::Phase::kTracked;
   track.left_view = false;
@@ -87,6 +95,11 @@ void ObjectTracker::finish_search(const Pose& T_camera_anchor) {
   track.state = TrackState::kPoor;
   track.T_camera_object = T_camera_anchor * best.T_anchor_object;
   track.motion.start(track.T_camera_object, support_.R_camera_floor.transposed(), frame_.input->device_t_s);
+  track.motion.start_found({}, {});
+  if (search_.where != Search::Where::kRival) return;
+  const Track& rival = tracks_[search_.rival];
+  track.motion.start_found(rival.motion.velocity_mps(), rival.motion.angular_velocity_rps());
+  evict(tracks_[search_.rival]);
 }
 
 // The segment is somebody else.
@@ -211,14 +224,22 @@ void ObjectTracker::search_step() {
   const Footprint footprint = find_footprint(points_of(search_.track).first(used), support_);
   const Pose anchor = search_anchor(footprint);
   if (search_.next_yaw == kSearchYaws) {
-    refine(search_.best[search_.refined++], anchor);
-    if (search_.refined == Search::kKept) finish_search(anchor);
+    Search::Found& tried = search_.best[search_.refined++];
+    refine(tried, anchor);
+    // One that the colours confirm needs no comparison; shape alone may fit two ways.
+    const bool confirmed = tried.score > 0 && track.habit.knows_color() && track.aligned.color.used > 0;
+    for (int i = search_.refined; confirmed && i < Search::kKept; ++i) search_.best[i].score = 0;
+    if (confirmed || search_.refined == Search::kKept) finish_search(anchor);
     return;
   }
+  const bool in_place = search_.where == Search::Where::kInPlace;
+  const Rect box = search_.where == Search::Where::kRival ? owned_[search_.rival].box : search_.box;
+  const HiddenSide hidden =
+      hidden_side(frame_.depth_z, frame_.owners, searched_owner(), box, segmentation_->view);
   for (int i = 0; i < kYawsPerFrame && search_.next_yaw < kSearchYaws; ++i, ++search_.next_yaw) {
     const double yaw = 2.0 * kPi * search_.next_yaw / kSearchYaws;
-    const Pose start = search_.where == Search::Where::kInPlace ? turned_in_place(track, support_, yaw)
-                                                                : hypothesis(track, footprint, support_, yaw);
+    const Pose start = in_place ? turned_in_place(track, support_, yaw)
+                                : hypothesis(track, footprint, support_, yaw, hidden);
     const double score = try_pose(track, start, false);
     if (score > 0) search_.note(score, anchor.inverse() * track.aligned.T_camera_object);
   }

@@ -104,6 +104,7 @@ class ObjectTracker {
   const Unexplained* searched_segment() const;
   std::size_t claim_searched();
   Pose search_anchor(const Footprint& footprint) const;
+  std::uint8_t searched_owner() const;
   double try_pose(Track& track, const Pose& T_camera_object, bool turn);
   void refine(Search::Found& found, const Pose& T_camera_anchor);
   void finish_search(const Pose& T_camera_anchor);

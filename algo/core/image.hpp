@@ -41,6 +41,13 @@ struct Rect {
   static constexpr Rect nothing() { return {1 << 30, 1 << 30, -(1 << 30), -(1 << 30)}; }
 };
 
+// Share of the box that lies inside of an image.
+constexpr double share_inside(const Rect& box, int width, int height) {
+  const double area = static_cast<double>(box.width()) * box.height();
+  const Rect in = box.clipped(width, height);
+  return area > 0 ? static_cast<double>(in.width()) * in.height() / area : 0.0;
+}
+
 constexpr bool overlap(const Rect& a, const Rect& b) {
   return a.u0 < b.u1 && b.u0 < a.u1 && a.v0 < b.v1 && b.v0 < a.v1;
 }

@@ -63,9 +63,10 @@ void learn_one(float value, int& frames, float& habit) {
 
 }  // namespace
 
+bool Habit::knows_color() const { return colored_frames_ >= kHabitFrames; }
+
 bool Habit::broken_by_color(const AlignResult& result) const {
-  return colored_frames_ >= kHabitFrames &&
-         result.color.sigma > kHabitColorTimes * color_sigma_ + kHabitColorMore;
+  return knows_color() && result.color.sigma > kHabitColorTimes * color_sigma_ + kHabitColorMore;
 }
 
 bool Habit::broken_by(const AlignResult& result, const Agreement& a) const {

@@ -32,6 +32,7 @@ class Habit {
  public:
   bool broken_by(const AlignResult& result, const Agreement& agreement) const;
   bool broken_by_color(const AlignResult& result) const;
+  bool knows_color() const;
   // What a pose that was found by searching must reach: soft and ragged things never fit well.
   float least_explained() const;
   // Also from poses that broke it: what stays different (the lamps went out, a cloth lies on it) becomes the

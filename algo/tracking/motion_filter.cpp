@@ -14,6 +14,15 @@ void MotionFilter::start(const Pose& T_camera_object, const Mat3& R_reference_ca
   for (int i = 0; i < 6; ++i) axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
 }
 
+void MotionFilter::start_found(const Vec3& velocity_mps, const Vec3& angular_velocity_rps) {
+  constexpr double kMoved_m = 0.03, kTurned_rad = 0.1;
+  for (int i = 0; i < 6; ++i) {
+    axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
+    axis_[i].pp = i >= 3 ? kTurned_rad * kTurned_rad : kMoved_m * kMoved_m;
+    axis_[i].rate = i >= 3 ? angular_velocity_rps[i - 3] : velocity_mps[i];
+  }
+}
+
 void MotionFilter::leave_plane() {
   for (const int i : {2, 3, 4}) axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
 }

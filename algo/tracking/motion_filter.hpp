@@ -26,6 +26,9 @@ class MotionFilter {
   // Starts at rest. R_reference_camera: axes in which the filter works.
   void start(const Pose& T_camera_object, const Mat3& R_reference_camera, double t_s);
 
+  // After a search: it may have moved on since, at these rates (reference axes) or at any others.
+  void start_found(const Vec3& velocity_mps, const Vec3& angular_velocity_rps);
+
   // Height and lean (the reference axes' z is up) are unknown anew.
   void leave_plane();
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "algo/core/scalar_math.hpp"
+#include "algo/tracking/observe.hpp"
 
 namespace st {
 
@@ -38,15 +39,46 @@ bool size_fits(const Bounds& model, const Bounds& candidate, bool touches_border
          c.z > 0.4 * m.z - 0.03 && c.z < 1.4 * m.z + 0.05;
 }
 
-Pose hypothesis(const Track& track, const Footprint& footprint, const Support& support, double yaw_rad) {
+HiddenSide hidden_side(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
+                       std::uint8_t owner, const Rect& box, const Rect& view) {
+  const int beyond = depth_z.width / 100 + 1;
+  int rows = 0, left = 0, right = 0;  // rows that go on behind something nearer, or out of view
+  const Rect in = box.clipped(depth_z.width, depth_z.height);
+  for (int v = in.v0; v < in.v1; ++v) {
+    int first = -1, last = -1;
+    for (int u = in.u0; u < in.u1; ++u)
+      if (owners(u, v) == owner) first = first < 0 ? u : first, last = u;
+    if (first < 0) continue;
+    ++rows;
+    const auto hides = [&](int u, int edge) {
+      if (u <= view.u0 || u >= view.u1 - 1) return true;
+      const float z = depth_z(u, v), own = depth_z(edge, v);
+      return z > 0 && own > 0 && z < own - edge_step_m(own);
+    };
+    left += hides(first - beyond, first) ? 1 : 0;
+    right += hides(last + beyond, last) ? 1 : 0;
+  }
+  if (2 * left > rows && left > right) return HiddenSide::kLeft;
+  if (2 * right > rows && right > left) return HiddenSide::kRight;
+  return HiddenSide::kNone;
+}
+
+Pose hypothesis(const Track& track, const Footprint& footprint, const Support& support, double yaw_rad,
+                HiddenSide hidden) {
   const Mat3& R = support.R_camera_floor;
   Pose T;
   T.R = orthonormalized(R * rotation_z(yaw_rad));
   // The middle of the model's footprint goes where the candidate's is; its foot to the candidate's foot.
   const Vec3 model{track.bounds.centre().x, track.bounds.centre().y,
                    footprint.on_floor ? 0.0 : track.bounds.low.z};
-  const Vec3 seen{footprint.bounds.centre().x, footprint.bounds.centre().y,
-                  footprint.on_floor ? 0.0 : footprint.bounds.low.z};
+  Vec3 seen{footprint.bounds.centre().x, footprint.bounds.centre().y,
+            footprint.on_floor ? 0.0 : footprint.bounds.low.z};
+  // The floor's y axis points to the left of the image.
+  const double half = 0.25 * (track.bounds.size().x + track.bounds.size().y);
+  if (footprint.bounds.size().y < 1.8 * half) {
+    if (hidden == HiddenSide::kLeft) seen.y = footprint.bounds.low.y + half;
+    if (hidden == HiddenSide::kRight) seen.y = footprint.bounds.high.y - half;
+  }
   T.t = footprint.T_camera_object * seen - T.R * model;
   return T;
 }

@@ -40,8 +40,15 @@ struct Search {
 // seen.
 bool size_fits(const Bounds& model, const Bounds& candidate, bool touches_border);
 
-// The model set on the candidate's footprint, turned by yaw: where the alignment starts.
-Pose hypothesis(const Track& track, const Footprint& footprint, const Support& support, double yaw_rad);
+// Which side of a candidate is not in sight: beyond the edge of the view, or behind something nearer.
+enum class HiddenSide { kNone, kLeft, kRight };
+HiddenSide hidden_side(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
+                       std::uint8_t owner, const Rect& box, const Rect& view);
+
+// The model set on the candidate's footprint, turned by yaw: where the alignment starts. Of a candidate that
+// is narrower than the model, the side in sight is matched.
+Pose hypothesis(const Track& track, const Footprint& footprint, const Support& support, double yaw_rad,
+                HiddenSide hidden);
 
 // The last good pose turned about the vertical through the model's middle.
 Pose turned_in_place(const Track& track, const Support& support, double yaw_rad);

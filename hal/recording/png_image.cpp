@@ -54,7 +54,7 @@ void convert_to_rgb8(png_structp png, const Job& job) {
 bool decode_rows(Job& job, Want want, std::uint8_t* out, std::size_t out_bytes) {
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {  // NOLINT(cert-err52-cpp): libpng knows no other way
     png_destroy_read_struct(&png, &info, nullptr);
     return false;
   }
