@@ -59,3 +59,45 @@ TEST(SearchForLost, AModelMostlyHiddenDoesNotScoreLikeOneInSight) {
   seen.same = 0.9f, seen.through = 0.1f, seen.explained = 0.6f;
   CHECK(fit_score(aligned, hidden) < fit_score(aligned, seen));
 }
+
+TEST(SearchForLost, TheSideBehindSomethingNearerIsHidden) {
+  const Rect box{60, 40, 90, 60}, view{0, 0, kW, kH};
+  for (int v = 0; v < kH; ++v)
+    for (int u = 0; u < kW; ++u) {
+      const auto at = static_cast<std::size_t>(v * kW + u);
+      depth[at] = u < 60 ? 0.7f : 1.0f;  // a screen on the left
+      owners[at] = u >= 60 && u < 90 && v >= 40 && v < 60 ? 2 : 0;
+      if (owners[at] == 0 && u >= 90) depth[at] = 2.0f;
+    }
+  const ImageView<const float> z{depth.data(), kW, kH};
+  const ImageView<const std::uint8_t> whose{owners.data(), kW, kH};
+  CHECK(hidden_side(z, whose, 2, box, view) == HiddenSide::kLeft);
+  for (float& d : depth) d = d < 0.9f ? 2.0f : d;  // it is gone
+  CHECK(hidden_side(z, whose, 2, box, view) == HiddenSide::kNone);
+  CHECK(hidden_side(z, whose, 2, box, {0, 0, 91, kH}) == HiddenSide::kRight);  // the view ends there
+}
+
+TEST(SearchForLost, OfAHalfSeenOneTheSideInSightIsMatched) {
+  const auto track = std::make_unique<Track>();
+  track->bounds.include({-0.17, -0.17, 0});
+  track->bounds.include({0.17, 0.17, 0.09});
+  const Support support = make_support({0, -1, 0}, 0.5, true);
+  Footprint half;
+  half.on_floor = true;
+  half.T_camera_object = {support.R_camera_floor, {0.1, 0.5, 1.5}};
+  half.bounds.include({-0.17, -0.08, 0});  // y is to the left: the left half is in sight
+  half.bounds.include({0.17, 0.08, 0.09});
+  const Vec3 left = support.R_camera_floor.col(1);
+  const Vec3 whole = hypothesis(*track, half, support, 0, HiddenSide::kNone).t;
+  const Vec3 matched = hypothesis(*track, half, support, 0, HiddenSide::kRight).t;
+  DOUBLES_EQUAL(0.08 - 0.17, dot(matched - whole, left), 1e-9);
+  DOUBLES_EQUAL(0.17 - 0.08, dot(hypothesis(*track, half, support, 0, HiddenSide::kLeft).t - whole, left),
+                1e-9);
+}
+
+TEST(SearchForLost, TheBestOfAllIsFoundWhereverItStands) {
+  Search search;
+  for (const double score : {0.1, 0.5, 0.3}) search.note(score, {{}, {score, 0, 0}});
+  search.best[0].score = 0;  // refused when it was refined
+  DOUBLES_EQUAL(0.3, search.best_of_all().score, 0);
+}
