@@ -54,6 +54,20 @@ bool StreamParser::next(SensorState& state) {
   }
 }
 
+void StreamParser::expect(std::span<const std::uint8_t> packets) {
+  Request request;
+  for (const std::uint8_t packet : packets) {
+    const int data = oi::packet_size(model_, packet);
+    if (data == 0) continue;  // the robot leaves out what it does not know
+    if (request.count == static_cast<int>(sizeof request.packets)) return;
+    request.packets[request.count++] = packet;
+    request.bytes += 1 + data;
+  }
+  if (request.count == 0) return;
+  requests_[1] = requests_[0];
+  requests_[0] = request;
+}
+
 // Judges as early as the bytes allow, so that a 19 in the payload that poses as a header does not hold back
 // the good frame behind it.
 StreamParser::Verdict StreamParser::judge(int start) const {
@@ -63,11 +77,17 @@ StreamParser::Verdict StreamParser::judge(int start) const {
   if (bytes[0] != kHeader) return Verdict::kBad;
   if (size < 2) return Verdict::kIncomplete;
   const int end = 2 + bytes[1];
+  const bool any = requests_[0].count == 0;
+  bool fits[2];
+  for (int k = 0; k < 2; ++k) fits[k] = requests_[k].count > 0 && requests_[k].bytes == bytes[1];
+  if (!any && !fits[0] && !fits[1]) return Verdict::kBad;
   int at = 2;
-  while (at < end) {
+  for (int packet = 0; at < end; ++packet) {
     if (at >= size) return Verdict::kIncomplete;
     const int data = oi::packet_size(model_, bytes[at]);
-    if (data == 0) return Verdict::kBad;
+    for (int k = 0; k < 2; ++k)
+      fits[k] = fits[k] && packet < requests_[k].count && requests_[k].packets[packet] == bytes[at];
+    if (data == 0 || (!any && !fits[0] && !fits[1])) return Verdict::kBad;
     at += 1 + data;
   }
   if (at != end || bytes[1] == 0) return Verdict::kBad;

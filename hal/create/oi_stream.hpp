@@ -48,7 +48,12 @@ class StreamParser {
   void push(std::uint8_t byte);
   bool next(SensorState& state);  // takes a good frame that is complete
 
-  // Forgets a half-read frame: after the baud rate or the stream's list has changed.
+  // What the robot was last asked to stream. From then on a frame is good only when it holds exactly these
+  // packets, or those of the request before, whose last frames may still be on their way: of damage that
+  // happens to leave the checksum right, next to nothing passes. Before the first request any list will do.
+  void expect(std::span<const std::uint8_t> packets);
+
+  // Forgets a half-read frame: after the baud rate has changed.
   void clear() { size_ = 0; }
 
   std::uint64_t good_frames() const { return good_frames_; }
@@ -58,6 +63,12 @@ class StreamParser {
   enum class Verdict { kIncomplete, kGood, kBad };
   Verdict judge(int start) const;
   bool known_length(int start) const;
+
+  // The packets of one request, and how many bytes a frame then holds between its length and its checksum.
+  struct Request {
+    std::uint8_t packets[64]{};
+    int count = 0, bytes = 0;
+  };
   bool skip_to_frame_behind();
   void drop(int count);
 
@@ -66,7 +77,8 @@ class StreamParser {
   std::uint8_t bytes_[kLongestFrame + 1]{};
   int size_ = 0;
   std::uint8_t
-      lengths_[2]{};  // N of the newest good frames; two, since a driver may alternate between two lists
+      lengths_[2]{};     // N of the newest good frames; two, since a driver may alternate between two lists
+  Request requests_[2];  // the newest first; count 0: none
   std::uint64_t good_frames_ = 0, bad_bytes_ = 0;
 };
 

@@ -105,7 +105,7 @@ TEST(CreateRobot, TheLogHoldsEveryByteAndDecodesToTheSameWay) {
   CHECK(reader.model() == RobotModel::kCreate2);
   DeadReckoning replayed(0.235);
   const RobotBytes decoder =
-      decode_odometry(*reader.model(), [&](const OdometrySample& s) { replayed.add(s); });
+      decode_odometry(*reader.model(), reader.geometry(), [&](const OdometrySample& s) { replayed.add(s); });
   bool safe = false, goodbye = false;
   double last_t_s = 0;
   reader.pump_until_time(1e12, [&](double t_s, bool rx, std::span<const std::uint8_t> bytes) {
@@ -203,7 +203,7 @@ TEST(CreateRobot, WakesARobotThatWaitsForData) {
        {std::string("\x80\x91\x00", 3), std::string("\x80\xa7\x01", 3), std::string("\x80\x8c\x00\x10", 4)}) {
     SimulatedRobot simulated;
     {
-      SerialPort port(simulated.port(), 115200);
+      RobotPort port(simulated.port(), 115200);
       port.write({reinterpret_cast<const std::uint8_t*>(torn.data()), torn.size()});
       sleep_ms(50);
     }

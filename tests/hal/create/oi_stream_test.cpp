@@ -138,6 +138,77 @@ TEST(OiStream, DamageCostsOnlyTheFrameItTouched) {
   }
 }
 
+// A frame cut anywhere, then good ones: not one of these is lost or held back, and nothing else is taken for
+// a frame. Of every list that this program asks for, and with the list known or not.
+TEST(OiStream, EveryTruncationOfEveryFrameCostsThatFrameAlone) {
+  const std::vector<std::uint8_t> lists[] = {
+      {35},  {35, 43, 44}, {7, 9, 10, 11, 12, 13, 14, 21, 22, 23, 24, 25, 26, 34, 35, 41, 42},
+      {100}, {6},          {19, 20}};
+  for (const auto& list : lists)
+    for (const bool known : {false, true})
+      for (const int fill : {0, 19, 255}) {
+        Bytes payload;
+        for (const std::uint8_t packet : list) {
+          payload.push_back(packet);
+          for (int i = oi::packet_size(RobotModel::kCreate2, packet); i > 0; --i)
+            payload.push_back(static_cast<std::uint8_t>(fill));
+        }
+        const Bytes whole = frame(payload);
+        for (std::size_t from = 0; from < whole.size(); ++from)
+          for (std::size_t to = from; to < whole.size(); ++to) {
+            StreamParser parser(RobotModel::kCreate2);
+            if (known) parser.expect(list);
+            Bytes bytes = whole;
+            append(bytes, Bytes(whole.begin() + static_cast<std::ptrdiff_t>(from),
+                                whole.begin() + static_cast<std::ptrdiff_t>(to)));
+            append(bytes, whole);
+            UNSIGNED_LONGS_EQUAL(2, parse(parser, bytes).size());
+            UNSIGNED_LONGS_EQUAL(1, parse(parser, whole).size());
+          }
+      }
+}
+
+// Once the list is known, of a million random bytes none pass for a frame, and the good frame behind them is
+// taken with its last byte.
+TEST(OiStream, AMillionRandomBytesBringNothingThatWasNotSent) {
+  sim::Random random(31);
+  StreamParser parser(RobotModel::kCreate2);
+  const std::uint8_t list[] = {22, 43, 44, 24, 35};
+  parser.expect(list);
+  SensorState state;
+  std::uint64_t sent = 0, taken = 0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    // Now and then what begins like a frame, so that chance does not have to find the header.
+    const int kind = random.below(16);
+    parser.push(static_cast<std::uint8_t>(kind == 0 ? 19 : kind == 1 ? 13 : random.below(256)));
+    while (parser.next(state)) ++taken;
+    if (i % 1000 != 999) continue;
+    ++sent;
+    const Bytes good = numbered(i / 1000);
+    for (const std::uint8_t byte : good) {
+      parser.push(byte);
+      while (parser.next(state)) {
+        ++taken;
+        LONGS_EQUAL(i / 1000, state.value(22));
+      }
+    }
+    UNSIGNED_LONGS_EQUAL(sent, taken);
+  }
+}
+
+TEST(OiStream, FramesOfAnotherListThanAskedForAreRefused) {
+  StreamParser parser(RobotModel::kCreate2);
+  const std::uint8_t first[] = {22, 43, 44, 24, 35}, second[] = {35}, third[] = {7, 35};
+  parser.expect(first);
+  parser.expect(second);
+  UNSIGNED_LONGS_EQUAL(1, parse(parser, numbered(1)).size());  // those of the list before are on their way
+  UNSIGNED_LONGS_EQUAL(1, parse(parser, frame({35, 2})).size());
+  UNSIGNED_LONGS_EQUAL(0, parse(parser, frame({34, 2})).size());
+  parser.expect(third);
+  UNSIGNED_LONGS_EQUAL(0, parse(parser, numbered(1)).size());
+  UNSIGNED_LONGS_EQUAL(1, parse(parser, frame({7, 0, 35, 2})).size());
+}
+
 TEST(OiStream, NoiseAndTextOfTheRobotBetweenFramesCostNone) {
   sim::Random random(9);
   Bytes bytes;
