@@ -114,7 +114,7 @@ bool CreateRobot::drive(double left_mps, double right_mps) {
                        : fastest > oi::kMaxWheel_mmps ? mmps_per_mps * oi::kMaxWheel_mmps / fastest
                                                       : mmps_per_mps;
   const auto mmps = [&](double mps) { return sane ? static_cast<int>(std::lround(mps * scale)) : 0; };
-  return send(oi::drive_direct(mmps(left_mps), mmps(right_mps))) && sane;
+  return send(oi::drive_direct(mmps(left_mps), mmps(right_mps))) && sane && !disconnected_.load();
 }
 
 // What is asked for after this is meant for the robot as it is now: a standstill is over once the robot is

@@ -70,6 +70,8 @@ struct PacketInfo {
   Sends create1, create2;
   const char* name;
   const char* unit;  // of measure; "bits" and "code" as the specification lists them; "counts" wrap at 2^16
+  std::int16_t low, high;  // what it is known to lie within; equal: anything goes.
+  std::int16_t step;       // how far it may lie from the frame before; 0: as far as it likes
 };
 
 // Null outside of 7-58, and for what this model does not have.
@@ -82,6 +84,9 @@ int all_sensors(RobotModel model);
 // such packet.
 int packet_size(RobotModel model, int packet);
 bool packet_is_signed(int packet);
+// Whether a robot may well have sent this; `before`: what the frame before it held, or null. Firmwares have
+// surprised before: what is not plausible is to be doubted, not refused.
+bool plausible(int packet, int value, const int* before);
 
 // The single packets [first, last] that a packet or group holds, in ascending order; first > last: no such
 // packet.

@@ -38,7 +38,8 @@ void decode_packet(RobotModel model, int packet, std::span<const std::uint8_t> d
 // Finds frames in a byte stream. After a false or damaged start it looks on from the very next byte, so that
 // a loss, a flip, an insertion or text from the robot costs the frames it touched and no other. Both models
 // are taken to count the header into the checksum: the Create 1 specification says otherwise, real Create 1s
-// do.
+// do. One sum in 256 is right by chance: a frame whose values are not plausible, or in which another one
+// seems to begin, is good only when the next one begins right behind it.
 class StreamParser {
  public:
   explicit StreamParser(RobotModel model) : model_(model) {}
@@ -63,6 +64,8 @@ class StreamParser {
   enum class Verdict { kIncomplete, kGood, kBad };
   Verdict judge(int start) const;
   bool known_length(int start) const;
+  bool doubtful(const SensorState& state) const;
+  bool header_at(int at) const;
 
   // The packets of one request, and how many bytes a frame then holds between its length and its checksum.
   struct Request {
@@ -73,12 +76,14 @@ class StreamParser {
   void drop(int count);
 
   static constexpr int kLongestFrame = 3 + 255;
+  static constexpr int kHeaderBytes = 3;  // 19, length, first packet
   RobotModel model_;
-  std::uint8_t bytes_[kLongestFrame + 1]{};
+  std::uint8_t bytes_[kLongestFrame + kHeaderBytes]{};
   int size_ = 0;
   std::uint8_t
       lengths_[2]{};     // N of the newest good frames; two, since a driver may alternate between two lists
   Request requests_[2];  // the newest first; count 0: none
+  SensorState before_;
   std::uint64_t good_frames_ = 0, bad_bytes_ = 0;
 };
 
