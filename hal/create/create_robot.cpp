@@ -27,6 +27,7 @@ constexpr std::int64_t kDistancePeriod_ns =
 constexpr int kReaderWait_ms = 20;
 constexpr int kControlTries = 5, kControlWait_ms = 400;
 constexpr int kGuardEnd_ms = 1000;
+constexpr int kLastTries_ms = 3000;
 constexpr int kWeakFrames = kEmpty_ms / 15;
 
 // What every model is asked for, slot after slot; 59 bytes a frame at most, which fits 57600 baud.
@@ -264,12 +265,26 @@ void CreateRobot::stop_without_guard() {
   }
 }
 
+// A robot that is silent may have lost its plug and be driving on: for a few seconds it is told to stop as
+// soon as it hears again.
+void CreateRobot::stop_for_good() {
+  const timespec moment{0, 20 * kMs};
+  const std::int64_t end_ns = system_clock().monotonic_ns() + kLastTries_ms * kMs;
+  for (;;) {
+    stop();
+    const std::int64_t now_ns = system_clock().monotonic_ns();
+    if (disconnected_.load() || !lost_contact(now_ns) || now_ns > end_ns) return;
+    nanosleep(&moment, nullptr);
+  }
+}
+
 void CreateRobot::close() {
   if (closing_.exchange(true)) return;
-  stop();
+  stop_for_good();
   shutdown(guard_.link,
            SHUT_WR);  // the guard stops the robot once more, says farewell and ends; its echo is still logged
-  if (!wait_for_child(guard_.pid, kGuardEnd_ms)) shutdown(guard_.link, SHUT_RDWR);
+  // Without a port it stays on, to stop the robot should the port come back.
+  if (disconnected_.load() || !wait_for_child(guard_.pid, kGuardEnd_ms)) shutdown(guard_.link, SHUT_RDWR);
   reader_.join();
   ::close(guard_.link);
   sim_.reset();

@@ -42,6 +42,7 @@ class CreateRobot final : public DriveBase {
   void begin_regaining(std::int64_t now_ns);
   void regain_control(std::int64_t now_ns);
   void stop_without_guard();
+  void stop_for_good();
   bool lost_contact(std::int64_t now_ns) const;
   void note(RobotFault fault) { noted_.fetch_or(1u << static_cast<unsigned>(fault)); }
   RobotFault worst_fault(std::int64_t now_ns);

@@ -20,8 +20,8 @@ constexpr SafetyRow kRules[] = {
      "its battery is empty; charge it before the next drive"},
     {"silent", "no good frame from the robot", "150 ms", kEnd, 500, RobotFault::kSilent,
      "nothing comes from it; stop it by hand if it moves, then check its battery and cable"},
-    {"disconnected", "the port is gone, as when the cable is pulled", "at once, when the port is back", kEnd,
-     300, RobotFault::kDisconnected,
+    {"disconnected", "the cable is pulled, at either end", "at once, when it is back", kEnd, 300,
+     RobotFault::kDisconnected,
      "the port went away; the robot may drive on: stop it by hand, or plug the cable in again within a "
      "minute"},
     {"not_seen", "no object is tracked while the robot drives",
