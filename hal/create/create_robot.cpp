@@ -43,16 +43,6 @@ oi::Command stream_list(RobotModel model, bool with_distance) {
   return oi::stream(packets);
 }
 
-GuardOrders orders_for(RobotModel model) {
-  GuardOrders orders;
-  orders.stop = oi::halt();
-  orders.farewell = oi::pause_stream(false);
-  orders.farewell.add(oi::kStart);  // Passive: it can charge
-  if (model == RobotModel::kCreate2)
-    orders.farewell.add(oi::kStop);  // and Off; the Create 1 has no such opcode
-  return orders;
-}
-
 }  // namespace
 
 CreateRobot::CreateRobot(std::unique_ptr<RobotPort> port, const RobotIdentity& identity,

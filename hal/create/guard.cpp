@@ -184,6 +184,16 @@ void close_all_but(int a, int b, int c, int d) {
 
 }  // namespace
 
+GuardOrders orders_for(RobotModel model) {
+  GuardOrders orders;
+  orders.stop = oi::halt();
+  orders.farewell = oi::pause_stream(false);
+  orders.farewell.add(oi::kStart);  // Passive: it can charge
+  if (model == RobotModel::kCreate2)
+    orders.farewell.add(oi::kStop);  // and Off; the Create 1 has no such opcode
+  return orders;
+}
+
 Guard start_guard(int port, const PortAddress& address, const GuardOrders& orders, int keep_open) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)

@@ -29,6 +29,8 @@ struct GuardOrders {
   oi::Command farewell;                // at the end, after stop: back to a mode in which the robot charges
 };
 
+GuardOrders orders_for(RobotModel model);
+
 enum GuardMessage : std::uint8_t {
   kGuardReady = 'g',
   kGuardReceived = 'r',

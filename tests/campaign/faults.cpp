@@ -32,7 +32,10 @@ void count(Tally& tally, const Provocation& what, const Outcome& outcome) {
     ++tally.never_drove;
     return;
   }
-  if (what.exit_code != kAny && outcome.exit_code != what.exit_code) ++tally.wrong_code;
+  if (what.exit_code != kAny && outcome.exit_code != what.exit_code) {
+    ++tally.wrong_code;
+    std::fprintf(stderr, "%s: code %d %s\n", what.name, outcome.exit_code, outcome.why.c_str());
+  }
   if (outcome.stood_ms < 0) {
     ++tally.went_on;
     return;

@@ -1,6 +1,9 @@
 #include "tests/support/provocations.hpp"
 
-#include <pty.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <stdlib.h>
+#include <sys/socket.h>
 
 #include <atomic>
 #include <cstring>
@@ -108,9 +111,17 @@ Outcome at_terminal(const Provocation& what, int after_ms) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  int terminal = -1;
-  const pid_t program = forkpty(&terminal, nullptr, nullptr, nullptr);
+  // Not forkpty(): other provocations, side by side, must not inherit its end and keep it open.
+  int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  char name[64];
+  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0 ||
+      ptsname_r(terminal, name, sizeof name) != 0)
+    return {};
+  const pid_t program = fork();
   if (program == 0) {
+    setsid();
+    const int own = open(name, O_RDWR);  // the first one that a session opens is its own
+    for (int fd = 0; fd < 3; ++fd) dup2(own, fd);
     execv(STARTRACK_BINARY, argv.data());
     _exit(127);
   }
@@ -136,6 +147,61 @@ Outcome at_terminal(const Provocation& what, int after_ms) {
   over.store(true);
   if (reader.joinable()) reader.join();
   if (terminal >= 0) close(terminal);
+  return outcome;
+}
+
+// The guard at the robot's end, as a process that stands between.
+class RemoteGuardProcess {
+ public:
+  explicit RemoteGuardProcess(const SimulatedRobot& robot) {
+    // A port that was free a moment ago.
+    const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in any{};
+    any.sin_family = AF_INET;
+    any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof any;
+    if (bind(probe, reinterpret_cast<const sockaddr*>(&any), size) == 0)
+      getsockname(probe, reinterpret_cast<sockaddr*>(&any), &size);
+    close(probe);
+    number_ = std::to_string(ntohs(any.sin_port));
+    pid_ = start_program({"drive", "--guard", "--robot", robot.port(), "--listen", number_});
+  }
+  ~RemoteGuardProcess() {
+    kill(pid_, SIGCONT);
+    kill(pid_, SIGTERM);
+    wait_for_exit(pid_, 3000);
+  }
+  pid_t pid() const { return pid_; }
+  // Connects as soon as it listens.
+  pid_t start_drive(const SimulatedRobot& robot) const {
+    for (int i = 0; i < 400; ++i, sleep_ms(10)) {
+      // Meets the robot first: it turns Passive.
+      if (robot.now().mode != 0) break;
+    }
+    sleep_ms(1000);
+    return start_program(
+        {"drive", "--robot", "tcp:127.0.0.1:" + number_, "--path", robot.folder().file("p.toml", kLongLine)});
+  }
+
+ private:
+  std::string number_;
+  pid_t pid_ = -1;
+};
+
+// Over TCP: something happens to the program (before: null), or to the guard at the robot's end.
+Outcome over_tcp(const Provocation& what, int after_ms) {
+  const SimulatedRobot robot;
+  if (!robot.up()) return {};
+  const RemoteGuardProcess remote(robot);
+  const pid_t program = remote.start_drive(robot);
+  const pid_t victim = what.before != nullptr ? remote.pid() : program;
+  Outcome outcome = measure(robot, after_ms, [&] { kill(victim, what.signal); });
+  if (what.signal == SIGSTOP) {
+    kill(program, SIGKILL);
+    wait_for_exit(program, 2000);
+    return outcome;
+  }
+  finish(program, outcome);
   return outcome;
 }
 
@@ -167,7 +233,7 @@ Outcome by_camera(const Provocation& what, int after_ms) {
       measure(robot, after_ms, [&] { (std::strcmp(what.rule, "stale") == 0 ? frames : sees).store(false); });
   over.store(true);
   loop.join();
-  fprintf(stderr,"DEBUG %s\n", name_of(driver.fault()));
+  outcome.why = name_of(driver.fault());
   outcome.exit_code = driver.fault() == rule_of(RobotFault::kNotSeen).fault ? 3 : 0;
   base->close();
   return outcome;
@@ -192,6 +258,10 @@ constexpr Provocation kProvocations[] = {
     {"killed", "failed assertion (SIGABRT)", kAny, by_signal, nullptr, nullptr, SIGABRT},
     {"killed", "crash (SIGSEGV)", kAny, by_signal, nullptr, nullptr, SIGSEGV},
     {"killed", "SIGQUIT", kAny, by_signal, nullptr, nullptr, SIGQUIT},
+    {"killed", "kill -9, robot over TCP", kAny, over_tcp, nullptr, nullptr, SIGKILL},
+    {"stalled", "SIGSTOP, robot over TCP", kAny, over_tcp, nullptr, nullptr, SIGSTOP},
+    {"guard_killed", "kill -9 at the robot's end of TCP", 3, over_tcp, nullptr, "remote", SIGKILL},
+    {"stalled", "SIGSTOP at the robot's end of TCP", kAny, over_tcp, nullptr, "remote", SIGSTOP},
     {"guard_killed", "kill -9 of the guard", 3, by_killed_guard, nullptr, nullptr, 0},
     {"signal", "Ctrl-C", 130, by_signal, nullptr, nullptr, SIGINT},
     {"signal", "kill", 130, by_signal, nullptr, nullptr, SIGTERM},

@@ -15,6 +15,7 @@ struct Outcome {
   double stood_ms = -1;   // from the trigger; -1: it drives on
   double way_m = 0;       // from the trigger until it stood
   int exit_code = -1000;  // of the program
+  std::string why;        // it stood, where the provocation knows
 };
 
 struct Provocation {

@@ -13,6 +13,7 @@
 #include "firmware_like/safety_supervisor.hpp"
 #include "hal/clock.hpp"
 #include "hal/create/drive_base.hpp"
+#include "hal/create/remote_guard.hpp"
 #include "hal/error.hpp"
 #include "hal/system/key_stop.hpp"
 #include "hal/system/stop_signal.hpp"
@@ -30,7 +31,8 @@ constexpr double kSettle_s = 0.1, kLongestSettle_s = 1.0;
 struct Arguments {
   RobotOptions robot;
   std::string model, path, on_bump = "end";
-  bool rules = false;
+  std::string listen;
+  bool rules = false, guard = false;
 };
 
 class Drive {
@@ -141,10 +143,15 @@ class Drive {
   bool live_;
 };
 
-int drive(const Arguments& arguments) {
+RobotOptions options_of(const Arguments& arguments) {
   RobotOptions options = arguments.robot;
   options.model_given = !arguments.model.empty();
   if (arguments.model == "create1") options.model = RobotModel::kCreate1;
+  return options;
+}
+
+int drive(const Arguments& arguments) {
+  const RobotOptions options = options_of(arguments);
   const Path path = load_path(arguments.path);
   watch_stop_signals();
   const std::unique_ptr<DriveBase> robot = open_robot(options);
@@ -169,11 +176,28 @@ void print_rules() {
                 row.stands_within_ms);
 }
 
+// At the robot's end of a network.
+int guard(const Arguments& arguments) {
+  if (arguments.robot.port.empty() || arguments.listen.empty())
+    throw Failure(ExitCode::kBadInput, "--guard needs --robot PORT and --listen [HOST:]PORT");
+  watch_stop_signals();
+  RemoteGuard remote(options_of(arguments), arguments.listen);
+  std::printf("guard: a Create %d at %s; programs reach it at port %d\n",
+              remote.model() == RobotModel::kCreate1 ? 1 : 2, arguments.robot.port.c_str(), remote.port());
+  std::fflush(stdout);
+  if (!remote.serve())
+    throw Failure(
+        ExitCode::kDeviceFault,
+        "robot " + arguments.robot.port + ": the guard process ended; look at the robot, and start it again");
+  return static_cast<int>(ExitCode::kInterrupted);
+}
+
 int run(const Arguments& arguments) {
   if (arguments.rules) {
     print_rules();
     return 0;
   }
+  if (arguments.guard) return guard(arguments);
   if (arguments.robot.port.empty() || arguments.path.empty())
     throw Failure(ExitCode::kBadInput,
                   "drive needs --robot PORT and --path FILE; see startrack drive --help");
@@ -191,12 +215,20 @@ void add_drive(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  startrack drive --robot /dev/ttyUSB0 --path examples/paths/circle-0.5.toml\n"
       "  startrack drive --robot sim --path examples/paths/square-1m.toml\n"
+      "  startrack drive --guard --robot /dev/ttyUSB0 --listen 0.0.0.0:7170    # on the robot's own "
+      "computer\n"
+      "  startrack drive --robot tcp:192.168.1.20:7170 --path examples/paths/circle-0.5.toml\n"
       "  startrack drive --rules        # when it stops, and why");
   command->add_option("--path", arguments->path, "path program: .toml, or .csv way points")
       ->type_name("FILE");
   add_drive_options(*command, arguments->robot, arguments->on_bump);
   command->add_option("--model", arguments->model, "create1 or create2; found out when left out")
       ->check(CLI::IsMember({"create1", "create2"}));
+  command->add_flag("--guard", arguments->guard,
+                    "hold --robot for a program elsewhere, and stop it when that falls silent");
+  command
+      ->add_option("--listen", arguments->listen, "with --guard: where; without HOST for this computer only")
+      ->type_name("[HOST:]PORT");
   command->add_flag("--rules", arguments->rules, "print the safety rules, and drive nothing");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
