@@ -25,10 +25,10 @@ constexpr std::int64_t kLongSilence_ns = 1000 * kMs;  // reset, asleep or unplug
 constexpr std::int64_t kDistancePeriod_ns =
     300 * kMs;  // Create 1: seldom, since each reading rounds to a degree
 constexpr int kReaderWait_ms = 20;
+constexpr std::int64_t kLongestTurn_ns = 2 * kReaderWait_ms * kMs;  // of the reader, while it runs at all
 constexpr int kControlTries = 5, kControlWait_ms = 400;
 constexpr int kGuardEnd_ms = 1000;
 constexpr int kLastTries_ms = 3000;
-constexpr int kWeakFrames = kEmpty_ms / 15;
 
 // What every model is asked for, slot after slot; 59 bytes a frame at most, which fits 57600 baud.
 constexpr std::uint8_t kCommonPackets[] = {7, 9, 10, 11, 12, 13, 14, 21, 22, 23, 24, 25, 26, 34, 35, 41, 42};
@@ -111,19 +111,19 @@ bool CreateRobot::drive(double left_mps, double right_mps) {
 // What is asked for after this is meant for the robot as it is now: a standstill is over once the robot is
 // heard again and obeys.
 bool CreateRobot::stop() {
-  if (in_control_.load() && !lost_contact(system_clock().monotonic_ns())) standstill_.store(false);
+  if (in_control_.load() && !lost_contact()) standstill_.store(false);
   return send(oi::halt());
 }
 
-bool CreateRobot::lost_contact(std::int64_t now_ns) const {
-  return disconnected_.load() || now_ns - heard_ns_.load() > kSilent_ns;
+bool CreateRobot::lost_contact() const {
+  return disconnected_.load() || listened_in_vain_ns_.load() > kSilent_ns;
 }
 
 void CreateRobot::poll(FixedVector<OdometrySample, 64>& odometry, RobotStatus& status) {
   OdometrySample sample;
   while (!odometry.full() && travel_.pop(sample)) odometry.push_back(sample);
   const std::int64_t now_ns = system_clock().monotonic_ns();
-  status.fault = worst_fault(now_ns);
+  status.fault = worst_fault();
   status.last_heard_s = static_cast<double>(now_ns - heard_ns_.load()) * 1e-9;
   status.good_frames = good_frames_.load();
   status.bad_bytes = bad_bytes_.load();
@@ -133,10 +133,10 @@ void CreateRobot::poll(FixedVector<OdometrySample, 64>& odometry, RobotStatus& s
 }
 
 // What was noted since the last call, worst first. A bump of a few slots must not fall between two calls.
-RobotFault CreateRobot::worst_fault(std::int64_t now_ns) {
+RobotFault CreateRobot::worst_fault() {
   const std::uint32_t noted = noted_.exchange(0);
   if (disconnected_.load()) return RobotFault::kDisconnected;
-  if (now_ns - heard_ns_.load() > kSilent_ns) return RobotFault::kSilent;
+  if (listened_in_vain_ns_.load() > kSilent_ns) return RobotFault::kSilent;
   for (const RobotFault fault :
        {RobotFault::kDisconnected, RobotFault::kSilent, RobotFault::kWheelDrop, RobotFault::kCliff,
         RobotFault::kBump, RobotFault::kLeftSafeMode, RobotFault::kLowBattery})
@@ -146,7 +146,7 @@ RobotFault CreateRobot::worst_fault(std::int64_t now_ns) {
 
 void CreateRobot::read_robot() {
   std::uint8_t message[kGuardMessageBytes];
-  for (;;) {
+  for (std::int64_t last_ns = system_clock().monotonic_ns();;) {
     pollfd ready{guard_.link, POLLIN, 0};
     if (::poll(&ready, 1, kReaderWait_ms) > 0) {
       const ssize_t n = recv(guard_.link, message, sizeof message, MSG_DONTWAIT);
@@ -154,10 +154,13 @@ void CreateRobot::read_robot() {
       if (n > 0) on_message({message, static_cast<std::size_t>(n)});
     }
     const std::int64_t now_ns = system_clock().monotonic_ns();
-    if (in_control_.load() && lost_contact(now_ns)) {
+    // A computer that itself stood still for a while has not listened.
+    listened_in_vain_ns_.fetch_add(std::min(now_ns - last_ns, kLongestTurn_ns));
+    last_ns = now_ns;
+    if (in_control_.load() && lost_contact()) {
       note(RobotFault::kSilent);
       standstill_.store(true);
-      if (now_ns - heard_ns_.load() > kLongSilence_ns) begin_regaining(now_ns);
+      if (listened_in_vain_ns_.load() > kLongSilence_ns) begin_regaining(now_ns);
     }
     if (regain_ns_ != 0) regain_control(now_ns);
     if (identity_.model == RobotModel::kCreate1 && in_control_.load()) ask_for_distance(now_ns);
@@ -175,7 +178,7 @@ void CreateRobot::begin_regaining(std::int64_t now_ns) {
 
 // Passive, the stream, Safe mode, one at a time.
 void CreateRobot::regain_control(std::int64_t now_ns) {
-  if (mode_.load() == oi::kSafeMode && !lost_contact(now_ns)) {
+  if (mode_.load() == oi::kSafeMode && !lost_contact()) {
     in_control_.store(true);
     regain_ns_ = 0;
     return;
@@ -221,6 +224,7 @@ void CreateRobot::on_frame(const SensorState& state) {
   const int mode = identity_.mode_trusted ? state.value(oi::kOiMode) - identity_.mode_offset : oi::kSafeMode;
   mode_.store(mode);
   heard_ns_.store(now_ns);
+  listened_in_vain_ns_.store(0);
   good_frames_.store(stream_.parser().good_frames());
   if (state.bump_left() || state.bump_right()) note(RobotFault::kBump);
   if (state.wheel_drop()) note(RobotFault::kWheelDrop);
@@ -228,8 +232,8 @@ void CreateRobot::on_frame(const SensorState& state) {
   if (in_control_.load() && mode < oi::kSafeMode) note(RobotFault::kLeftSafeMode);
   const bool empty = state.value(oi::kCharge) * 100 < state.value(oi::kCapacity) * kEmpty_percent ||
                      state.value(oi::kVoltage) < kEmpty_mv;
-  weak_frames_ = empty ? weak_frames_ + 1 : 0;
-  if (weak_frames_ >= kWeakFrames) note(RobotFault::kLowBattery);
+  if (!empty || weak_since_ns_ == 0) weak_since_ns_ = now_ns;  // a dip under load is none
+  if (now_ns - weak_since_ns_ > kEmpty_ms * kMs) note(RobotFault::kLowBattery);
 }
 
 // Create 1: distance and angle join the stream for a frame now and then, so that they come under its
@@ -263,7 +267,7 @@ void CreateRobot::stop_for_good() {
   for (;;) {
     stop();
     const std::int64_t now_ns = system_clock().monotonic_ns();
-    if (disconnected_.load() || !lost_contact(now_ns) || now_ns > end_ns) return;
+    if (disconnected_.load() || !lost_contact() || now_ns > end_ns) return;
     nanosleep(&moment, nullptr);
   }
 }

@@ -43,9 +43,9 @@ class CreateRobot final : public DriveBase {
   void regain_control(std::int64_t now_ns);
   void stop_without_guard();
   void stop_for_good();
-  bool lost_contact(std::int64_t now_ns) const;
+  bool lost_contact() const;
   void note(RobotFault fault) { noted_.fetch_or(1u << static_cast<unsigned>(fault)); }
-  RobotFault worst_fault(std::int64_t now_ns);
+  RobotFault worst_fault();
 
   RobotIdentity identity_;
   RobotGeometry geometry_;
@@ -61,6 +61,7 @@ class CreateRobot final : public DriveBase {
   std::atomic<std::uint32_t> noted_{0};  // bit per RobotFault, since the last poll()
   std::atomic<bool> disconnected_{false};
   std::atomic<std::int64_t> heard_ns_{0};  // newest good frame
+  std::atomic<std::int64_t> listened_in_vain_ns_{0};
   std::atomic<std::uint64_t> good_frames_{0}, bad_bytes_{0};
   std::atomic<int> mode_{oi::kPassive}, battery_mv_{0};
   std::atomic<bool> in_control_{false}, closing_{false};
@@ -69,8 +70,8 @@ class CreateRobot final : public DriveBase {
 
   // The reader's own.
   OdometryStream stream_;
-  int weak_frames_ = 0;
-  std::int64_t regain_ns_ = 0;  // when the next command on the way back to Safe mode is due; 0: none
+  std::int64_t weak_since_ns_ = 0;  // the battery was last seen not to be empty
+  std::int64_t regain_ns_ = 0;      // when the next command on the way back to Safe mode is due; 0: none
   bool regain_safe_ = false;
   std::int64_t distance_asked_ns_ = 0;
   bool distance_in_list_ = false, distance_came_ = false;

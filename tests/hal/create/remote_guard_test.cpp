@@ -50,6 +50,7 @@ TEST_GROUP(RemoteGuard) {
     close(program);
     kill(guard, SIGTERM);
     LONGS_EQUAL(130, wait_for_exit(guard, 5000));
+    sleep_ms(300);  // its brakes
     DOUBLES_EQUAL(0.0, robot.now().left_mps, 0);
   }
   // Commands that come while it still meets the robot wait in the connection.
