@@ -19,7 +19,7 @@ void decode_packet(RobotModel model, int packet, std::span<const std::uint8_t> d
       value = value << 8 | data[at++];
       if (is_signed) value = static_cast<std::int16_t>(value);
     } else if (is_signed) {
-      value = static_cast<std::int8_t>(value);
+      value = value > 127 ? value - 256 : value;
     }
     state.set(id, value);
   }

@@ -8,6 +8,7 @@
 #include "algo/core/scalar_math.hpp"
 #include "hal/create/sim/create_pty.hpp"
 #include "hal/error.hpp"
+#include "hal/system/realtime.hpp"
 #include "hal/system/stop_signal.hpp"
 #include "tools/startrack/commands.hpp"
 
@@ -15,6 +16,7 @@ namespace st {
 namespace {
 
 constexpr double kLongestBraking_s = 1.0;
+constexpr int kRobotPriority = 60;  // above the loop, below the guard
 
 struct Arguments {
   sim::CreatePtyOptions pty;
@@ -82,6 +84,7 @@ int run(Arguments& arguments) {
   for (const std::string& text : arguments.events)
     arguments.pty.events.push_back(sim::parse_world_event(text));
   watch_stop_signals();
+  use_realtime_priority(kRobotPriority);  // a robot does not slow down with the load on this computer
   sim::CreatePty pty(arguments.pty);
   std::printf("%s\n", pty.path().c_str());
   std::fflush(stdout);
