@@ -50,11 +50,17 @@ double Loop::now_s() const { return static_cast<double>(parts_.clock.monotonic_n
 
 void Loop::drive() {
   if (parts_.driver == nullptr) return;
-  parts_.driver->decide(now_s());
+  Sight sight{true, false, 0};
+  for (const Track& track : parts_.tracker.tracks())
+    sight.sees = sight.sees || (track.active() && track.state == TrackState::kGood);
+  if (input_.complete_ns != 0)
+    sight.age_s = static_cast<double>(parts_.clock.monotonic_ns() - input_.complete_ns) * 1e-9;
+  const RobotFault before = parts_.driver->held_by();
+  parts_.driver->decide(now_s(), sight);
   parts_.driver->send();
-  if (parts_.driver->fault() == RobotFault::kNone) return;
-  report_.events.push_back(
-      {report_.t_s, EventKind::kRobotFault, 0, static_cast<double>(parts_.driver->fault()), 0, 0});
+  const RobotFault now = parts_.driver->held_by();
+  if (now == before || now == RobotFault::kNone) return;
+  report_.events.push_back({report_.t_s, EventKind::kRobotFault, 0, static_cast<double>(now), 0, 0});
 }
 
 // The one place that waits: for the next frame, and in a replay for room in the ring of reports.
@@ -72,6 +78,7 @@ bool Loop::acquire() {
       case FrameSource::Result::kFault:
         return stop(LoopEnd::kSourceFault);
       case FrameSource::Result::kTimeout:
+        if (parts_.driver != nullptr) parts_.driver->wait_without_frame(now_s());
         if (parts_.source.info().live && waits >= kSilentWaits) return stop(LoopEnd::kSourceFault);
         continue;
       case FrameSource::Result::kFrame:

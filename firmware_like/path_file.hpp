@@ -2,6 +2,7 @@
 // wrong and what is allowed: Failure (kBadInput).
 //
 //   speed_mps = 0.2           # optional; also accel_mps2, turn_deg_per_s
+//   area = { x_m = [-0.5, 2.0], y_m = [-1.0, 1.0] }   # optional: the floor that the robot may not leave
 //   [[step]]
 //   line = 1.0                # metres; negative: backwards
 //   [[step]]
@@ -12,6 +13,10 @@
 //   circle = { radius_m = 0.5, turns = 1, direction = "right" }   # turns 1 and "left" when left out
 //   [[step]]
 //   square = { side_m = 1.0 }                                     # direction as of a circle
+//   [[step]]
+//   polygon = { sides = 3, side_m = 0.8 }                         # direction as of a circle
+//   [[step]]
+//   figure_eight = { radius_m = 0.4, turns = 2 }                  # turns 1 when left out
 //   [[step]]
 //   wait = 2.0                # seconds
 //   [[step]]

@@ -15,6 +15,7 @@
 #include "firmware_like/sealed_section.hpp"
 #include "hal/results/run_folder.hpp"
 #include "hal/system/arena.hpp"
+#include "hal/system/key_stop.hpp"
 #include "hal/system/prefault.hpp"
 #include "hal/system/realtime.hpp"
 #include "hal/system/rusage.hpp"
@@ -130,6 +131,12 @@ SessionResult run_session(const SessionOptions& options) {
   // The robot first: its guard is a child process, and children are made before the arena is.
   std::unique_ptr<DriveBase> robot;
   if (!options.robot.port.empty()) robot = open_robot(options.robot);
+  if (robot && options.robot.port != "sim" && !arm_at_terminal()) {
+    robot->close();
+    return {ExitCode::kInterrupted, {}, "not armed; nothing was driven"};
+  }
+  std::optional<KeyStop> any_key;
+  if (robot) any_key.emplace();
   SourceOptions source_options = options.source;
   if (robot) source_options.robot_state_path = robot->sim_state_path();
   const std::unique_ptr<FrameSource> source = open_source(source_options);
@@ -162,7 +169,7 @@ SessionResult run_session(const SessionOptions& options) {
   Telemetry telemetry(ring, sinks);
   telemetry.start();
   std::optional<PathDriver> driver;
-  if (robot && path) driver.emplace(*robot, *path);
+  if (robot && path) driver.emplace(*robot, *path, options.on_bump);
   Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr},
             options.loop);
   source->start();
@@ -210,8 +217,8 @@ SessionResult run_session(const SessionOptions& options) {
   result.code = exit_code_of(end);
   if (why == LoopEnd::kSourceFault) result.trouble = info.name + ": " + source->fault();
   if (why == LoopEnd::kRobotFault)
-    result.trouble = options.robot.port + ": the robot reports " + name_of(driver->fault()) +
-                     "; see to it and start again";
+    result.trouble = "robot " + options.robot.port + ": " + name_of(driver->fault()) + ": " +
+                     rule_of(driver->fault()).what_to_do;
   return result;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "firmware_like/config.hpp"
-#include "hal/create/drive_base.hpp"
+#include "hal/create/safety_rules.hpp"
 #include "hal/error.hpp"
 #include "hal/source/frame_source.hpp"
 
@@ -13,7 +13,8 @@ namespace st {
 
 struct SessionOptions {
   SourceOptions source;
-  RobotOptions robot;     // port empty: no robot
+  RobotOptions robot;  // port empty: no robot
+  Reaction on_bump = Reaction::kEnd;
   std::string path_file;  // empty: no path
   LoopConfig loop;
   std::string tracker_name = "star";

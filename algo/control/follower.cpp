@@ -39,4 +39,10 @@ WheelSpeeds OpenLoopFollower::step(double passed_s, double tick_s) {
   return commanded_;
 }
 
+void OpenLoopFollower::hold(double passed_s) {
+  rolled_.left_m += commanded_.left_mps * passed_s;
+  rolled_.right_m += commanded_.right_mps * passed_s;
+  commanded_ = {};
+}
+
 }  // namespace st

@@ -15,6 +15,8 @@ class OpenLoopFollower {
   // Once a tick: `passed_s` since the call before, during which the previous command was obeyed, and how long
   // the coming one is expected to hold. Speeds are whole mm/s, as the robot takes them.
   WheelSpeeds step(double passed_s, double tick_s);
+  // Instead of a step: the robot is to stand from now on, and the path's time with it.
+  void hold(double passed_s);
 
   double time_s() const { return time_s_; }
   bool done() const;  // the path's time is over and nothing is missing

@@ -18,7 +18,7 @@ class CreateRobot final : public DriveBase {
  public:
   // Takes the port over from the handshake: starts the guard, which alone holds it from then on, and the
   // reader.
-  CreateRobot(std::unique_ptr<SerialPort> port, const RobotIdentity& identity,
+  CreateRobot(std::unique_ptr<RobotPort> port, const RobotIdentity& identity, const RobotGeometry& wheels,
               std::unique_ptr<RobotLogWriter> log, std::unique_ptr<SimChild> sim);
   ~CreateRobot() override { close(); }
 
@@ -26,7 +26,7 @@ class CreateRobot final : public DriveBase {
   void take_control();
 
   bool drive(double left_mps, double right_mps) override;
-  bool stop() override { return drive(0, 0); }
+  bool stop() override;
   void poll(FixedVector<OdometrySample, 64>& odometry, RobotStatus& status) override;
   RobotGeometry geometry() const override { return geometry_; }
   RobotModel model() const override { return identity_.model; }
@@ -39,13 +39,18 @@ class CreateRobot final : public DriveBase {
   void on_message(std::span<const std::uint8_t> message);
   void on_frame(const SensorState& state);
   void ask_for_distance(std::int64_t now_ns);
+  void begin_regaining(std::int64_t now_ns);
+  void regain_control(std::int64_t now_ns);
   void stop_without_guard();
+  void stop_for_good();
+  bool lost_contact() const;
   void note(RobotFault fault) { noted_.fetch_or(1u << static_cast<unsigned>(fault)); }
-  RobotFault worst_fault(std::int64_t now_ns);
+  RobotFault worst_fault();
 
   RobotIdentity identity_;
   RobotGeometry geometry_;
-  std::string port_path_;
+  double wheel_scale_;
+  PortAddress port_;
   std::unique_ptr<RobotLogWriter> log_;
   std::unique_ptr<SimChild> sim_;
   Guard guard_;
@@ -56,13 +61,18 @@ class CreateRobot final : public DriveBase {
   std::atomic<std::uint32_t> noted_{0};  // bit per RobotFault, since the last poll()
   std::atomic<bool> disconnected_{false};
   std::atomic<std::int64_t> heard_ns_{0};  // newest good frame
+  std::atomic<std::int64_t> listened_in_vain_ns_{0};
   std::atomic<std::uint64_t> good_frames_{0}, bad_bytes_{0};
   std::atomic<int> mode_{oi::kPassive}, battery_mv_{0};
   std::atomic<bool> in_control_{false}, closing_{false};
+  std::atomic<bool> standstill_{true};  // contact was lost: nothing moves before stop() was called
+  std::atomic<int> reconnects_{0};
 
   // The reader's own.
   OdometryStream stream_;
-  int weak_frames_ = 0;
+  std::int64_t weak_since_ns_ = 0;  // the battery was last seen not to be empty
+  std::int64_t regain_ns_ = 0;      // when the next command on the way back to Safe mode is due; 0: none
+  bool regain_safe_ = false;
   std::int64_t distance_asked_ns_ = 0;
   bool distance_in_list_ = false, distance_came_ = false;
 };

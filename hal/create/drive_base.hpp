@@ -11,12 +11,15 @@ namespace st {
 
 enum class RobotModel { kCreate1, kCreate2 };
 
+// Wheels as they are, not as the robot believes them: measured ones go here.
 struct RobotGeometry {
   double wheel_base_m = 0.235;
   double wheel_diameter_m = 0.072;
   double counts_per_turn = 508.8;
 };
 
+// What keeps the robot from driving on; safety_rules.hpp says what follows from each. The last two are not
+// the robot's own: the camera does not see it, or sees nothing new.
 enum class RobotFault : std::uint8_t {
   kNone,
   kSilent,
@@ -25,7 +28,9 @@ enum class RobotFault : std::uint8_t {
   kCliff,
   kWheelDrop,
   kLeftSafeMode,
-  kLowBattery
+  kLowBattery,
+  kNotSeen,
+  kStale
 };
 const char* name_of(RobotFault fault);
 
@@ -35,6 +40,7 @@ struct RobotStatus {
   std::uint64_t good_frames = 0, bad_bytes = 0;
   int oi_mode = 0;  // 0 off, 1 passive, 2 safe, 3 full
   int battery_mv = 0;
+  int reconnects = 0;  // how often the port came back
 };
 
 class DriveBase {
@@ -42,7 +48,9 @@ class DriveBase {
   virtual ~DriveBase() = default;
 
   // Wheel speeds in m/s, clamped to the robot's limits. Also the heartbeat: the guard stops the robot when
-  // commands cease for 250 ms. False when the command could not be handed over. No heap, no lock, no wait.
+  // commands cease for 250 ms. After the robot was silent or disconnected the wheels stay still, whatever is
+  // asked of them, until stop() was called once: it starts in a standstill. False when the command could not
+  // be handed over. No heap, no lock, no wait.
   virtual bool drive(double left_mps, double right_mps) = 0;
   virtual bool stop() = 0;
 
@@ -66,8 +74,10 @@ struct RobotOptions {
   std::string port;
   RobotModel model = RobotModel::kCreate2;
   bool model_given = false;  // otherwise found out
-  std::string log_path;      // robot.log: every byte both ways; empty: none
-  std::uint64_t seed = 1;    // for `sim`: wheel slip
+  // Measured wheels; 0: as the model has them.
+  RobotGeometry wheels{0, 0, 0};
+  std::string log_path;    // robot.log: every byte both ways; empty: none
+  std::uint64_t seed = 1;  // for `sim`: wheel slip
 };
 std::unique_ptr<DriveBase> open_robot(const RobotOptions& options);
 

@@ -22,6 +22,8 @@ namespace st {
 namespace {
 
 constexpr int kLastWords_ms = 200;  // at most so long for the farewell to leave
+constexpr int kTryAgain_ms = 50;    // how often a port that is gone is looked for
+constexpr int kConnect_ms = 300;
 
 std::int64_t now_ms() {
   timespec t{};
@@ -39,6 +41,7 @@ class Outbox {
     size_ += command.size();
   }
   bool empty() const { return size_ == 0; }
+  void forget() { size_ = 0; }
   // Writes what the port takes now, and tells the program what left. False: the port is gone.
   bool flush(int port, int link) {
     while (size_ > 0) {
@@ -69,6 +72,11 @@ bool pass_from_robot(int port, int link) {
   // A program that is stopped does not read; what it misses is lost, and the next good frame finds itself.
   send(link, message, static_cast<std::size_t>(n) + 1, MSG_DONTWAIT | MSG_NOSIGNAL);
   return true;
+}
+
+void tell(int link, GuardMessage what) {
+  const std::uint8_t message = what;
+  send(link, &message, 1, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 void say_farewell(int port, int link, Outbox& out, const GuardOrders& orders) {
@@ -107,6 +115,31 @@ bool watch(int port, int link, int signals, const GuardOrders& orders, Outbox& o
   }
 }
 
+// Opens the port again once it is there. -1: told to end, another program has it, or the program is no more
+// and nothing came back for as long as the orders say.
+int wait_for_port(int& link, int signals, const PortAddress& address, const GuardOrders& orders) {
+  std::int64_t end_ms = -1, try_ms = now_ms();  // no end while the program lives
+  for (;;) {
+    pollfd events[2] = {{signals, POLLIN, 0}, {link, POLLIN, 0}};
+    poll(events, 2, static_cast<int>(std::max<std::int64_t>(0, try_ms - now_ms())));
+    if (events[0].revents != 0) return -1;
+    if (events[1].revents != 0) {
+      std::uint8_t unheard[oi::Command::kCapacity];
+      const ssize_t n = recv(link, unheard, sizeof unheard, MSG_DONTWAIT);
+      if (n == 0 || (n < 0 && errno != EAGAIN)) {
+        close(link);
+        link = -1;
+        end_ms = now_ms() + orders.linger_ms;
+      }
+    }
+    if (now_ms() < try_ms) continue;
+    try_ms = now_ms() + kTryAgain_ms;
+    const int port = open_port(address, kConnect_ms);
+    if (port >= 0) return port;
+    if (end_ms >= 0 && (now_ms() >= end_ms || port == -EBUSY || port == -EWOULDBLOCK)) return -1;
+  }
+}
+
 void close_all_but(int a, int b, int c, int d) {
   int keep[] = {a, b, c, d};
   std::sort(std::begin(keep), std::end(keep));
@@ -119,7 +152,8 @@ void close_all_but(int a, int b, int c, int d) {
   close_range(first, ~0U, 0);
 }
 
-[[noreturn]] void guard_main(int port, int link, int keep_open, const GuardOrders& orders) {
+[[noreturn]] void guard_main(int port, int link, int keep_open, const PortAddress& address,
+                             const GuardOrders& orders) {
   setsid();  // Ctrl-C, Ctrl-Z and the closing of the terminal are not for the guard
   prctl(PR_SET_NAME, "st-guard");
   sigset_t ending;  // all are blocked since before the fork
@@ -132,19 +166,35 @@ void close_all_but(int a, int b, int c, int d) {
   sched_param priority{};
   priority.sched_priority = 70;  // above the loop it guards; refused without permission, and then ordinary
   sched_setscheduler(0, SCHED_FIFO, &priority);
-  const std::uint8_t ready = kGuardReady;
-  send(link, &ready, 1, MSG_NOSIGNAL);
+  tell(link, kGuardReady);
   Outbox out;
-  const bool connected = watch(port, link, signals, orders, out);
-  if (connected) say_farewell(port, link, out, orders);
-  const std::uint8_t gone = kGuardPortGone;
-  if (!connected) send(link, &gone, 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+  while (!watch(port, link, signals, orders, out)) {
+    tell(link, kGuardPortGone);
+    close(port);
+    port = wait_for_port(link, signals, address, orders);
+    if (port < 0) _exit(0);
+    out.forget();  // what was on its way is old by now
+    if (link < 0) break;
+    out.add(orders.stop.span());
+    tell(link, kGuardPortBack);
+  }
+  say_farewell(port, link, out, orders);
   _exit(0);
 }
 
 }  // namespace
 
-Guard start_guard(int port, const GuardOrders& orders, int keep_open) {
+GuardOrders orders_for(RobotModel model) {
+  GuardOrders orders;
+  orders.stop = oi::halt();
+  orders.farewell = oi::pause_stream(false);
+  orders.farewell.add(oi::kStart);  // Passive: it can charge
+  if (model == RobotModel::kCreate2)
+    orders.farewell.add(oi::kStop);  // and Off; the Create 1 has no such opcode
+  return orders;
+}
+
+Guard start_guard(int port, const PortAddress& address, const GuardOrders& orders, int keep_open) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     throw Failure(ExitCode::kDeviceFault, std::string("robot guard: no socket: ") + std::strerror(errno));
@@ -153,7 +203,7 @@ Guard start_guard(int port, const GuardOrders& orders, int keep_open) {
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = fork();
-  if (pid == 0) guard_main(port, ends[1], keep_open, orders);
+  if (pid == 0) guard_main(port, ends[1], keep_open, address, orders);
   const int error = errno;
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close(ends[1]);

@@ -2,7 +2,7 @@
 
 #include <time.h>
 
-#include <vector>
+#include <iterator>
 
 #include "hal/create/oi.hpp"
 #include "hal/create/oi_stream.hpp"
@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kListen_ms = 400;
 constexpr int kModeGap_ms = 20;  // a mode command sooner after another may be ignored
+constexpr int kSpeedChange_ms = 100;
+constexpr int kSlowBaud = 19200;  // what a robot that was started with its button held down listens at
 
 std::int64_t now_ms() {
   timespec t{};
@@ -22,7 +24,7 @@ std::int64_t now_ms() {
 
 class Conversation {
  public:
-  Conversation(SerialPort& port, RobotLogWriter& log) : port_(port), log_(log) {}
+  Conversation(RobotPort& port, RobotLogWriter& log) : port_(port), log_(log) {}
 
   void say(const oi::Command& command) {
     log_.add(host_seconds(), false, command.span());
@@ -46,7 +48,7 @@ class Conversation {
   std::size_t bytes_heard() const { return bytes_heard_; }
 
  private:
-  SerialPort& port_;
+  RobotPort& port_;
   RobotLogWriter& log_;
   std::size_t bytes_heard_ = 0;
 };
@@ -66,25 +68,58 @@ RobotIdentity identify(Conversation& robot, int baud, const SensorState& passive
   return identity;
 }
 
+// At 19200 baud the stream does not fit its slots.
+void speed_up(Conversation& robot, RobotPort& port, RobotIdentity& identity) {
+  const int baud = oi::default_baud(identity.model);
+  SensorState nothing;
+  robot.say(oi::baud(oi::code_of_baud(baud)));
+  robot.hear(oi::kOiMode, kSpeedChange_ms, nothing);
+  port.set_baud(baud);
+  identity.baud = baud;
+}
+
+bool meet_at(Conversation& robot, RobotPort& port, int baud, int starts, RobotIdentity& identity) {
+  port.set_baud(baud);
+  robot.say(oi::start_run(starts));
+  SensorState state;
+  robot.hear(oi::kOiMode, kModeGap_ms, state);
+  const std::uint8_t mode_only[] = {oi::kOiMode};
+  robot.say(oi::stream(mode_only));
+  if (!robot.hear(oi::kOiMode, kListen_ms, state)) return false;
+  identity = identify(robot, baud, state);
+  if (baud == kSlowBaud) speed_up(robot, port, identity);
+  return true;
+}
+
+[[noreturn]] void say_why(const Conversation& robot, const RobotPort& port) {
+  const std::string where = "robot port " + port.path() + ": ";
+  if (robot.bytes_heard() > 0)
+    throw Failure(
+        ExitCode::kDeviceFault,
+        where +
+            "what answers is not understood at 115200, 57600 or 19200 baud; is it a Create? Take its "
+            "battery out for a moment: that sets its own baud rate again");
+  throw Failure(ExitCode::kDeviceFault,
+                where +
+                    "no answer; switch the robot on, press its power or Clean button in case it "
+                    "sleeps, and check the cable");
+}
+
 }  // namespace
 
-RobotIdentity meet_robot(SerialPort& port, std::optional<RobotModel> told, RobotLogWriter& log) {
+RobotIdentity meet_robot(RobotPort& port, std::optional<RobotModel> told, RobotLogWriter& log) {
   Conversation robot(port, log);
   const bool slow_first = told == RobotModel::kCreate1;
-  const int bauds[] = {slow_first ? 57600 : 115200, slow_first ? 115200 : 57600};
+  // The guard at the other end of a connection has found the speed already.
+  const int bauds[] = {slow_first ? 57600 : 115200, slow_first ? 115200 : 57600, kSlowBaud};
+  const std::size_t speeds = port.address().tcp ? 1 : std::size(bauds);
   // A program that died in the middle of a command left the robot waiting for its data: Start, as often as
   // any command has data bytes. First what covers all but scripts and songs, since each may be heard as a
   // beep.
-  for (const int starts : {16, 120})
-    for (const int baud : bauds) {
-      port.set_baud(baud);
-      robot.say(oi::start_run(starts));
-      SensorState state;
-      robot.hear(oi::kOiMode, kModeGap_ms, state);
-      const std::uint8_t mode_only[] = {oi::kOiMode};
-      robot.say(oi::stream(mode_only));
-      if (!robot.hear(oi::kOiMode, kListen_ms, state)) continue;
-      const RobotIdentity identity = identify(robot, baud, state);
+  for (const int starts : {16, 120}) {
+    for (std::size_t i = 0; i < speeds; ++i) {
+      RobotIdentity identity;
+      if (!meet_at(robot, port, bauds[i], starts, identity)) continue;
       if (told && *told != identity.model)
         throw Failure(ExitCode::kDeviceFault, "robot port " + port.path() +
                                                   ": this robot answers like a Create " +
@@ -92,16 +127,9 @@ RobotIdentity meet_robot(SerialPort& port, std::optional<RobotModel> told, Robot
                                                   ", not like the model told; leave --model out");
       return identity;
     }
-  const std::string where = "robot port " + port.path() + ": ";
-  if (robot.bytes_heard() > 0)
-    throw Failure(ExitCode::kDeviceFault,
-                  where +
-                      "what answers is not understood at 115200 or 57600 baud; is it a Create, "
-                      "at its own baud rate? Take its battery out for a moment");
-  throw Failure(ExitCode::kDeviceFault,
-                where +
-                    "no answer; switch the robot on, press its power or Clean button in case it "
-                    "sleeps, and check the cable");
+    if (robot.bytes_heard() == 0) port.pulse_wake_line();
+  }
+  say_why(robot, port);
 }
 
 }  // namespace st

@@ -5,7 +5,7 @@
 
 #include "hal/create/drive_base.hpp"
 #include "hal/create/robot_log_writer.hpp"
-#include "hal/create/serial_port.hpp"
+#include "hal/create/robot_port.hpp"
 
 namespace st {
 
@@ -19,6 +19,6 @@ struct RobotIdentity {
 };
 
 // Throws Failure (kDeviceFault): no answer, not understood, or not the model that was told.
-RobotIdentity meet_robot(SerialPort& port, std::optional<RobotModel> told, RobotLogWriter& log);
+RobotIdentity meet_robot(RobotPort& port, std::optional<RobotModel> told, RobotLogWriter& log);
 
 }  // namespace st

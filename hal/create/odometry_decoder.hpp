@@ -2,6 +2,7 @@
 // same.
 #pragma once
 
+#include "hal/create/command_reader.hpp"
 #include "hal/create/oi_stream.hpp"
 #include "hal/create/wheel_travel.hpp"
 #include "hal/recording/robot_log.hpp"
@@ -10,7 +11,15 @@ namespace st {
 
 class OdometryStream {
  public:
-  OdometryStream(RobotModel model, const RobotGeometry& geometry) : parser_(model), travel_(geometry) {}
+  OdometryStream(RobotModel model, const RobotGeometry& geometry)
+      : commands_(model), parser_(model), travel_(model, geometry) {}
+
+  // Bytes to the robot: a new list of packets to stream changes what a good frame is.
+  void sent(std::span<const std::uint8_t> bytes) {
+    for (const std::uint8_t byte : bytes)
+      if (commands_.push(byte) && commands_.command()[0] == oi::kStream)
+        parser_.expect(commands_.command().subspan(2));
+  }
 
   // Bytes from the robot, received at t_s. `on_frame(state)` for every good frame, then `on_travel(sample)`
   // when it tells of travel.
@@ -30,6 +39,7 @@ class OdometryStream {
   const StreamParser& parser() const { return parser_; }
 
  private:
+  oi::CommandReader commands_;
   StreamParser parser_;
   WheelTravel travel_;
   SensorState state_;
@@ -37,6 +47,6 @@ class OdometryStream {
 };
 
 // The decoder that the reader of recordings asks for (hal/recording/robot_log.hpp).
-RobotBytes decode_odometry(RobotModel model, OdometrySink sink);
+RobotBytes decode_odometry(RobotModel model, const std::optional<RobotGeometry>& geometry, OdometrySink sink);
 
 }  // namespace st

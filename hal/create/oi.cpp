@@ -60,26 +60,6 @@ constexpr OpcodeRow kOpcodes[] = {
     {kStop, 0, Known::kCreate2},
 };
 
-// Packets 7-58: bytes, negative when signed.
-constexpr std::int8_t kPacketBytes[] = {
-    1,  1,  1,  1,  1,  1,  1,  1,  1, 1, 1, 1,  // 7-18
-    -2, -2, 1,  2,  -2, -1, 2,  2,               // 19-26
-    2,  2,  2,  2,  2,  1,  2,  1,               // 27-34
-    1,  1,  1,  1,  -2, -2, -2, -2,              // 35-42
-    -2, -2, 1,  2,  2,  2,  2,  2,  2,           // 43-51
-    1,  1,  -2, -2, -2, -2, 1,                   // 52-58
-};
-static_assert(sizeof kPacketBytes == kLastPacket - kFirstPacket + 1);
-
-constexpr int kLastPacketCreate1 = 42;
-
-struct GroupRow {
-  std::uint8_t group, first, last;
-};
-constexpr GroupRow kGroups[] = {{0, 7, 26},    {1, 7, 16},    {2, 17, 20},  {3, 21, 26},
-                                {4, 27, 34},   {5, 35, 42},   {6, 7, 42},   {100, 7, 58},
-                                {101, 43, 58}, {106, 46, 51}, {107, 54, 58}};
-
 constexpr int kBauds[] = {300, 600, 1200, 2400, 4800, 9600, 14400, 19200, 28800, 38400, 57600, 115200};
 
 Command list_command(Opcode opcode, std::span<const std::uint8_t> packets) {
@@ -97,6 +77,12 @@ int default_baud(RobotModel model) { return model == RobotModel::kCreate1 ? 5760
 
 int baud_of_code(int code) {
   return code >= 0 && code < static_cast<int>(std::size(kBauds)) ? kBauds[code] : 0;
+}
+
+int code_of_baud(int baud) {
+  for (int code = 0; code < static_cast<int>(std::size(kBauds)); ++code)
+    if (kBauds[code] == baud) return code;
+  return -1;
 }
 
 RobotGeometry default_geometry(RobotModel model) {
@@ -175,26 +161,6 @@ int data_length(RobotModel model, std::uint8_t opcode, std::span<const std::uint
     return data_so_far.empty() ? 1 : 1 + data_so_far[0];
   }
   return -1;
-}
-
-PacketRange packet_range(RobotModel model, int packet) {
-  const int last_single = model == RobotModel::kCreate1 ? kLastPacketCreate1 : kLastPacket;
-  for (const GroupRow& row : kGroups)
-    if (row.group == packet)
-      return row.last <= last_single ? PacketRange{row.first, row.last} : PacketRange{};
-  if (packet >= kFirstPacket && packet <= last_single) return {packet, packet};
-  return {};
-}
-
-int packet_size(RobotModel model, int packet) {
-  const PacketRange range = packet_range(model, packet);
-  int bytes = 0;
-  for (int id = range.first; id <= range.last; ++id) bytes += std::abs(kPacketBytes[id - kFirstPacket]);
-  return bytes;
-}
-
-bool packet_is_signed(int packet) {
-  return packet >= kFirstPacket && packet <= kLastPacket && kPacketBytes[packet - kFirstPacket] < 0;
 }
 
 }  // namespace st::oi

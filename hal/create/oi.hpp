@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "hal/create/drive_base.hpp"
+#include "hal/create/oi_packets.hpp"
 
 namespace st::oi {
 
@@ -66,6 +66,7 @@ inline constexpr double kSlot_s = 0.015;  // the robot updates its sensors and s
 int default_baud(RobotModel model);
 // Data bytes of the code after opcode 129; 0 for a code that is not one.
 int baud_of_code(int code);
+int code_of_baud(int baud);  // -1: none
 RobotGeometry default_geometry(RobotModel model);
 
 // One whole command.
@@ -99,56 +100,5 @@ Command baud(int code);
 // Data bytes that follow `opcode`, as far as the data bytes seen so far tell: Song, Stream, Query list and
 // Script say their length in their data. -1: this model does not know the opcode.
 int data_length(RobotModel model, std::uint8_t opcode, std::span<const std::uint8_t> data_so_far);
-
-// ---- sensor packets ----
-
-inline constexpr int kFirstPacket = 7;
-inline constexpr int kLastPacket = 58;
-
-enum Packet : std::uint8_t {
-  kBumpsWheelDrops = 7,
-  kCliffLeft = 9,
-  kCliffFrontLeft = 10,
-  kCliffFrontRight = 11,
-  kCliffRight = 12,
-  kInfrared = 17,
-  kDistance = 19,
-  kAngle = 20,
-  kChargingState = 21,
-  kVoltage = 22,
-  kCurrent = 23,
-  kTemperature = 24,
-  kCharge = 25,
-  kCapacity = 26,
-  kCliffLeftSignal = 28,
-  kCliffFrontLeftSignal = 29,
-  kCliffFrontRightSignal = 30,
-  kCliffRightSignal = 31,
-  kChargers = 34,
-  kOiMode = 35,
-  kSongNumber = 36,
-  kSongPlaying = 37,
-  kStreamCount = 38,
-  kRequestedVelocity = 39,
-  kRequestedRadius = 40,
-  kRequestedRight = 41,
-  kRequestedLeft = 42,
-  kEncoderLeft = 43,
-  kEncoderRight = 44,
-  kCurrentLeft = 54,
-  kCurrentRight = 55,
-  kStasis = 58,
-};
-
-// Bytes of a single packet or of a group (0-6, and 100, 101, 106, 107 of the Create 2); 0: this model has no
-// such packet.
-int packet_size(RobotModel model, int packet);
-bool packet_is_signed(int packet);
-// The single packets [first, last] that a packet or group holds, in ascending order; first > last: no such
-// packet.
-struct PacketRange {
-  int first = 1, last = 0;
-};
-PacketRange packet_range(RobotModel model, int packet);
 
 }  // namespace st::oi

@@ -34,13 +34,22 @@ bool StreamParser::next(SensorState& state) {
       ++bad_bytes_;
       continue;
     }
-    state = SensorState{};
+    SensorState decoded;
     const int end = 2 + bytes_[1];
     for (int at = 2; at < end;) {
       const int size = oi::packet_size(model_, bytes_[at]);
-      decode_packet(model_, bytes_[at], {bytes_ + at + 1, static_cast<std::size_t>(size)}, state);
+      decode_packet(model_, bytes_[at], {bytes_ + at + 1, static_cast<std::size_t>(size)}, decoded);
       at += 1 + size;
     }
+    if (doubtful(decoded)) {
+      if (size_ <= end + kHeaderBytes && header_at(end + 1)) return false;
+      if (!header_at(end + 1)) {
+        drop(1);
+        ++bad_bytes_;
+        continue;
+      }
+    }
+    state = before_ = decoded;
     if (!known_length(0)) {
       lengths_[1] = lengths_[0];
       lengths_[0] = bytes_[1];
@@ -49,6 +58,20 @@ bool StreamParser::next(SensorState& state) {
     ++good_frames_;
     return true;
   }
+}
+
+void StreamParser::expect(std::span<const std::uint8_t> packets) {
+  Request request;
+  for (const std::uint8_t packet : packets) {
+    const int data = oi::packet_size(model_, packet);
+    if (data == 0) continue;  // the robot leaves out what it does not know
+    if (request.count == static_cast<int>(sizeof request.packets)) return;
+    request.packets[request.count++] = packet;
+    request.bytes += 1 + data;
+  }
+  if (request.count == 0) return;
+  requests_[1] = requests_[0];
+  requests_[0] = request;
 }
 
 // Judges as early as the bytes allow, so that a 19 in the payload that poses as a header does not hold back
@@ -60,11 +83,17 @@ StreamParser::Verdict StreamParser::judge(int start) const {
   if (bytes[0] != kHeader) return Verdict::kBad;
   if (size < 2) return Verdict::kIncomplete;
   const int end = 2 + bytes[1];
+  const bool any = requests_[0].count == 0;
+  bool fits[2];
+  for (int k = 0; k < 2; ++k) fits[k] = requests_[k].count > 0 && requests_[k].bytes == bytes[1];
+  if (!any && !fits[0] && !fits[1]) return Verdict::kBad;
   int at = 2;
-  while (at < end) {
+  for (int packet = 0; at < end; ++packet) {
     if (at >= size) return Verdict::kIncomplete;
     const int data = oi::packet_size(model_, bytes[at]);
-    if (data == 0) return Verdict::kBad;
+    for (int k = 0; k < 2; ++k)
+      fits[k] = fits[k] && packet < requests_[k].count && requests_[k].packets[packet] == bytes[at];
+    if (data == 0 || (!any && !fits[0] && !fits[1])) return Verdict::kBad;
     at += 1 + data;
   }
   if (at != end || bytes[1] == 0) return Verdict::kBad;
@@ -74,8 +103,29 @@ StreamParser::Verdict StreamParser::judge(int start) const {
   return (sum & 255) == 0 ? Verdict::kGood : Verdict::kBad;
 }
 
+bool StreamParser::doubtful(const SensorState& state) const {
+  for (int id = oi::kFirstPacket; id <= oi::kLastPacket; ++id) {
+    if (!state.has(id)) continue;
+    const int before = before_.value(id);
+    if (!oi::plausible(id, state.value(id), before_.has(id) ? &before : nullptr)) return true;
+  }
+  const int end = 2 + bytes_[1];
+  for (int at = 1; at < end; ++at)  // a 19 in the checksum's place takes no value's
+    if (header_at(at)) return true;
+  return false;
+}
+
+// Whether the bytes from there on, as far as they have come, are how a frame like the ones lately begins.
+bool StreamParser::header_at(int at) const {
+  if (at < size_ && bytes_[at] != kHeader) return false;
+  if (at + 1 < size_ && bytes_[at + 1] != bytes_[1] && !known_length(at)) return false;
+  return at + 2 >= size_ || bytes_[at + 2] == bytes_[2] ||
+         (requests_[0].count > 0 && bytes_[at + 2] == requests_[0].packets[0]);
+}
+
 bool StreamParser::known_length(int start) const {
-  return bytes_[start + 1] == lengths_[0] || bytes_[start + 1] == lengths_[1];
+  const int length = bytes_[start + 1];
+  return length != 0 && (length == lengths_[0] || length == lengths_[1]);
 }
 
 // A start that waits for more bytes than any frame had lately gives way to a whole frame behind it: a false

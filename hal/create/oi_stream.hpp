@@ -38,7 +38,8 @@ void decode_packet(RobotModel model, int packet, std::span<const std::uint8_t> d
 // Finds frames in a byte stream. After a false or damaged start it looks on from the very next byte, so that
 // a loss, a flip, an insertion or text from the robot costs the frames it touched and no other. Both models
 // are taken to count the header into the checksum: the Create 1 specification says otherwise, real Create 1s
-// do.
+// do. One sum in 256 is right by chance: a frame whose values are not plausible, or in which another one
+// seems to begin, is good only when the next one begins right behind it.
 class StreamParser {
  public:
   explicit StreamParser(RobotModel model) : model_(model) {}
@@ -48,7 +49,12 @@ class StreamParser {
   void push(std::uint8_t byte);
   bool next(SensorState& state);  // takes a good frame that is complete
 
-  // Forgets a half-read frame: after the baud rate or the stream's list has changed.
+  // What the robot was last asked to stream. From then on a frame is good only when it holds exactly these
+  // packets, or those of the request before, whose last frames may still be on their way: of damage that
+  // happens to leave the checksum right, next to nothing passes. Before the first request any list will do.
+  void expect(std::span<const std::uint8_t> packets);
+
+  // Forgets a half-read frame: after the baud rate has changed.
   void clear() { size_ = 0; }
 
   std::uint64_t good_frames() const { return good_frames_; }
@@ -58,15 +64,26 @@ class StreamParser {
   enum class Verdict { kIncomplete, kGood, kBad };
   Verdict judge(int start) const;
   bool known_length(int start) const;
+  bool doubtful(const SensorState& state) const;
+  bool header_at(int at) const;
+
+  // The packets of one request, and how many bytes a frame then holds between its length and its checksum.
+  struct Request {
+    std::uint8_t packets[64]{};
+    int count = 0, bytes = 0;
+  };
   bool skip_to_frame_behind();
   void drop(int count);
 
   static constexpr int kLongestFrame = 3 + 255;
+  static constexpr int kHeaderBytes = 3;  // 19, length, first packet
   RobotModel model_;
-  std::uint8_t bytes_[kLongestFrame + 1]{};
+  std::uint8_t bytes_[kLongestFrame + kHeaderBytes]{};
   int size_ = 0;
   std::uint8_t
-      lengths_[2]{};  // N of the newest good frames; two, since a driver may alternate between two lists
+      lengths_[2]{};     // N of the newest good frames; two, since a driver may alternate between two lists
+  Request requests_[2];  // the newest first; count 0: none
+  SensorState before_;
   std::uint64_t good_frames_ = 0, bad_bytes_ = 0;
 };
 

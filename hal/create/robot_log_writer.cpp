@@ -30,9 +30,9 @@ RobotLogWriter::~RobotLogWriter() {
   if (fd_ >= 0) close(fd_);
 }
 
-void RobotLogWriter::set_model(RobotModel model) {
+void RobotLogWriter::set_robot(RobotModel model, const RobotGeometry& wheels) {
   model_known_ = true;
-  write_line(robot_log_first_line(model) + kept_back_);
+  write_line(robot_log_first_line(model) + robot_log_wheels_line(wheels) + kept_back_);
   kept_back_.clear();
 }
 

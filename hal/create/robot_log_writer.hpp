@@ -20,7 +20,7 @@ class RobotLogWriter {
   RobotLogWriter(const RobotLogWriter&) = delete;
   RobotLogWriter& operator=(const RobotLogWriter&) = delete;
 
-  void set_model(RobotModel model);
+  void set_robot(RobotModel model, const RobotGeometry& wheels);
   void add(double t_s, bool from_robot, std::span<const std::uint8_t> bytes);
 
  private:

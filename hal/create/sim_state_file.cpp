@@ -40,7 +40,7 @@ SimStateReader::SimStateReader(const std::string& path) {
     memory = mmap(nullptr, sizeof(SimStateRing), PROT_READ, MAP_SHARED, fd, 0);
   if (fd >= 0) close(fd);
   if (memory != MAP_FAILED) ring_ = static_cast<const SimStateRing*>(memory);
-  if (ring_ == nullptr || ring_->magic != SimStateRing::kMagic || ring_->version != 1) {
+  if (ring_ == nullptr || ring_->magic != SimStateRing::kMagic || ring_->version != SimStateRing::kVersion) {
     if (ring_ != nullptr) munmap(memory, sizeof(SimStateRing));
     throw Failure(ExitCode::kDeviceFault,
                   "state file " + path +

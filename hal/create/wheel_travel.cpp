@@ -17,11 +17,17 @@ double beyond_rounding(double error, double step) {
   return error > step ? error - step : error < -step ? error + step : 0.0;
 }
 
+double metres_per_count(const RobotGeometry& g) { return kPi * g.wheel_diameter_m / g.counts_per_turn; }
+
 int count_difference(int now, std::uint16_t before) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(now - before));
 }
 
 }  // namespace
+
+double wheel_scale(const RobotGeometry& believed, const RobotGeometry& actual) {
+  return metres_per_count(actual) / metres_per_count(believed);
+}
 
 bool WheelTravel::update(double t_s, const SensorState& state, bool after_loss, OdometrySample& sample) {
   if (state.has(oi::kEncoderLeft) && state.has(oi::kEncoderRight)) return from_encoders(t_s, state, sample);
@@ -32,10 +38,10 @@ bool WheelTravel::update(double t_s, const SensorState& state, bool after_loss, 
 
 bool WheelTravel::from_encoders(double t_s, const SensorState& state, OdometrySample& sample) {
   const int left = state.value(oi::kEncoderLeft), right = state.value(oi::kEncoderRight);
-  const double metres_per_count = kPi * geometry_.wheel_diameter_m / geometry_.counts_per_turn;
+  const double m_per_count = metres_per_count(geometry_);
   const double dt_s = std::max(0.0, t_s - last_t_s_) + kLateFrame_s;
   const auto possible = [&](int a, int b) {
-    return std::max(std::abs(a), std::abs(b)) * metres_per_count <= kFastest_mps * dt_s;
+    return std::max(std::abs(a), std::abs(b)) * m_per_count <= kFastest_mps * dt_s;
   };
   int d_left = count_difference(left, left_), d_right = count_difference(right, right_);
   const bool report = started_;
@@ -57,7 +63,7 @@ bool WheelTravel::from_encoders(double t_s, const SensorState& state, OdometrySa
   left_ = static_cast<std::uint16_t>(left);
   right_ = static_cast<std::uint16_t>(right);
   last_t_s_ = t_s;
-  sample = {t_s, d_left * metres_per_count, d_right * metres_per_count};
+  sample = {t_s, d_left * m_per_count, d_right * m_per_count};
   return report;
 }
 
@@ -68,14 +74,14 @@ bool WheelTravel::from_requests(double t_s, const SensorState& state, bool after
   double left_m = state.value(oi::kRequestedLeft) * 1e-3 * dt_s;
   double right_m = state.value(oi::kRequestedRight) * 1e-3 * dt_s;
   predicted_m_ += 0.5 * (left_m + right_m);
-  predicted_rad_ += (right_m - left_m) / geometry_.wheel_base_m;
+  predicted_rad_ += (right_m - left_m) / believed_.wheel_base_m;
   if (state.has(oi::kDistance) && state.has(oi::kAngle)) {
     if (comparable_) {
       const double along_m = beyond_rounding(state.value(oi::kDistance) * 1e-3 - predicted_m_, 1e-3);
       const double turn_rad =
           beyond_rounding(state.value(oi::kAngle) * kPi / 180 - predicted_rad_, kPi / 180);
-      left_m += along_m - 0.5 * turn_rad * geometry_.wheel_base_m;
-      right_m += along_m + 0.5 * turn_rad * geometry_.wheel_base_m;
+      left_m += along_m - 0.5 * turn_rad * believed_.wheel_base_m;
+      right_m += along_m + 0.5 * turn_rad * believed_.wheel_base_m;
     }
     comparable_ = true;
     predicted_m_ = predicted_rad_ = 0;
@@ -83,7 +89,8 @@ bool WheelTravel::from_requests(double t_s, const SensorState& state, bool after
   const bool report = started_;
   started_ = true;
   last_t_s_ = t_s;
-  sample = {t_s, left_m, right_m};
+  const double scale = wheel_scale(believed_, geometry_);
+  sample = {t_s, scale * left_m, scale * right_m};
   return report;
 }
 

@@ -14,9 +14,15 @@
 
 namespace st {
 
+// How far a wheel truly rolls when the robot believes that it rolled a metre.
+double wheel_scale(const RobotGeometry& believed, const RobotGeometry& actual);
+
 class WheelTravel {
  public:
-  explicit WheelTravel(const RobotGeometry& geometry) : geometry_(geometry) {}
+  // `geometry`: as the wheels truly are. What the robot itself computes from its counts (requested speeds,
+  // distance, angle) it computes with the sizes that its model has by default.
+  WheelTravel(RobotModel model, const RobotGeometry& geometry)
+      : geometry_(geometry), believed_(oi::default_geometry(model)) {}
 
   // Travel since the sample before, from one good frame that was complete at t_s. `after_loss`: bytes were
   // lost or damaged since the frame before, so that a distance and angle may have been read and never
@@ -30,7 +36,7 @@ class WheelTravel {
   bool from_encoders(double t_s, const SensorState& state, OdometrySample& sample);
   bool from_requests(double t_s, const SensorState& state, bool after_loss, OdometrySample& sample);
 
-  RobotGeometry geometry_;
+  RobotGeometry geometry_, believed_;
   bool started_ = false, suspect_ = false;
   double last_t_s_ = 0;
   std::uint16_t left_ = 0, right_ = 0;  // encoder counts of the newest accepted frame

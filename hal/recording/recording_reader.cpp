@@ -22,7 +22,8 @@ RecordingReader::RecordingReader(std::string folder, const Calibration& calibrat
 
 void RecordingReader::open_robot_log(const OdometryDecoder& decoder) {
   if (!decoder || !robot_log_.open(path_of("robot.log")) || !robot_log_.model()) return;
-  robot_bytes_ = decoder(*robot_log_.model(), [this](const OdometrySample& s) { odometry_.push_back(s); });
+  robot_bytes_ = decoder(*robot_log_.model(), robot_log_.geometry(),
+                         [this](const OdometrySample& s) { odometry_.push_back(s); });
 }
 
 bool RecordingReader::read(FrameSlot& slot) {

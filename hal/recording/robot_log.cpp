@@ -48,8 +48,24 @@ std::optional<RobotModel> parse_robot_log_model(std::string_view first_line) {
   return std::nullopt;
 }
 
+std::optional<RobotGeometry> parse_robot_log_wheels(std::string_view line) {
+  std::string_view rest = trimmed(line);
+  RobotGeometry wheels;
+  if (take_word(rest) != "#" || take_word(rest) != "wheels") return std::nullopt;
+  for (double* value : {&wheels.wheel_base_m, &wheels.wheel_diameter_m, &wheels.counts_per_turn})
+    if (!parse_number(take_word(rest), *value) || !(*value > 0 && *value < 1e6)) return std::nullopt;
+  return wheels;
+}
+
 std::string robot_log_first_line(RobotModel model) {
   return model == RobotModel::kCreate1 ? "# model create1\n" : "# model create2\n";
+}
+
+std::string robot_log_wheels_line(const RobotGeometry& geometry) {
+  char line[80];
+  std::snprintf(line, sizeof line, "# wheels %.9g %.9g %.9g\n", geometry.wheel_base_m,
+                geometry.wheel_diameter_m, geometry.counts_per_turn);
+  return line;
 }
 
 std::string format_robot_log_line(double t_s, bool rx, std::span<const std::uint8_t> bytes) {
@@ -69,6 +85,7 @@ bool RobotLogReader::open(const std::string& path) {
   std::string_view line;
   if (!head.open(path)) return false;
   if (head.next(line)) model_ = parse_robot_log_model(line);
+  if (head.next(line)) geometry_ = parse_robot_log_wheels(line);
   return lines_.open(path);
 }
 

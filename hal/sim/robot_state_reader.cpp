@@ -31,11 +31,11 @@ RobotStateReader::RobotStateReader(const std::string& path) {
     throw Failure(ExitCode::kDeviceFault,
                   path + ": no robot state can be read there; is the simulated Create running?");
   ring_ = static_cast<const SimStateRing*>(memory);
-  if (ring_->magic != SimStateRing::kMagic || ring_->version != 1) {
+  if (ring_->magic != SimStateRing::kMagic || ring_->version != SimStateRing::kVersion) {
     munmap(memory, sizeof(SimStateRing));
-    throw Failure(
-        ExitCode::kDeviceFault,
-        path + ": is not a state file of the simulated Create (version 1); use one program version for both");
+    throw Failure(ExitCode::kDeviceFault, path +
+                                              ": is not a state file of the simulated Create of this "
+                                              "version; use one program version for both");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "algo/core/scalar_math.hpp"
@@ -47,6 +48,50 @@ TEST(PathFile, ExamplesAreWhatTheirNamesSay) {
   const Path way = load_path(kExamples + "waypoints.csv");
   const PathSample end = sample(way, way.duration_s());
   DOUBLES_EQUAL(0.0, std::hypot(end.x_m, end.y_m), 1e-9);
+}
+
+TEST(PathFile, EveryExampleCanBeDriven) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kExamples)) {
+    const Path path = load_path(entry.path().string());
+    CHECK(path.duration_s() > 1 && path.fastest_wheel_mps(0.26) <= 0.5);
+    ++count;
+  }
+  CHECK(count >= 8);
+  for (const char* closed : {"triangle.toml", "umbmark-left.toml", "umbmark-right.toml",
+                             "there-and-back.toml", "clover.toml", "figure-eight.toml"}) {
+    const Path path = load_path(kExamples + closed);
+    const PathSample end = sample(path, path.duration_s());
+    DOUBLES_EQUAL_TEXT(0.0, std::hypot(end.x_m, end.y_m), 1e-6, closed);
+  }
+}
+
+TEST(PathFile, PolygonsAndEightsAreSumsOfLinesTurnsAndArcs) {
+  const Path hexagon =
+      parse_path_toml("[[step]]\npolygon = { sides = 6, side_m = 0.5, direction = \"right\" }\n", "p");
+  UNSIGNED_LONGS_EQUAL(12, hexagon.size());
+  DOUBLES_EQUAL(3.0, hexagon.length_m(), 1e-12);
+  DOUBLES_EQUAL(-2 * kPi, sample(hexagon, hexagon.duration_s()).yaw_rad, 1e-9);
+  const Path eight = parse_path_toml("[[step]]\nfigure_eight = { radius_m = 0.4 }\n", "p");
+  UNSIGNED_LONGS_EQUAL(2, eight.size());
+  DOUBLES_EQUAL(4 * kPi * 0.4, eight.length_m(), 1e-9);
+}
+
+TEST(PathFile, APathThatLeavesItsAreaIsRefusedWithTheStepThatDoes) {
+  const char* area = "area = { x_m = [-0.3, 1.2], y_m = [-0.3, 0.3] }\n";
+  STRCMP_EQUAL("accepted", refusal(std::string(area) + "[[step]]\nline = 1\n").c_str());
+  check_refusal("area = { x_m = [-0.3, 1.2], y_m = [-0.3, 0.3] }\n[[step]]\nline = 1\n[[step]]\nline = 0.1\n",
+                "p:5: ", "would leave the area at x 1.1");
+  // The ends of an arc may lie within it, and the way between them not.
+  check_refusal(
+      "area = { x_m = [-0.3, 0.3], y_m = [-0.3, 2.3] }\n[[step]]\narc = { radius_m = 1, angle_deg = 180 }\n",
+      "p:3: ", "would leave");
+  check_refusal("area = { x_m = [-0.1, 1], y_m = [-1, 1] }\n[[step]]\nwait = 1\n", "p:3: ", "would leave");
+  check_refusal("area = { x_m = [1, -1], y_m = [0, 1] }\n[[step]]\nline = 1\n", "p:1: ", "smaller");
+  check_refusal("area = { x_m = [1], y_m = [0, 1] }\n[[step]]\nline = 1\n", "p:1: ", "[least, most]");
+  check_refusal("area = { x_m = [0, 1] }\n[[step]]\nline = 1\n", "p:1: ", "y_m is missing");
+  check_refusal("[[step]]\npolygon = { sides = 2, side_m = 1 }\n", "p:2: ", "3 to 36");
+  check_refusal("[[step]]\npolygon = { sides = 4.5, side_m = 1 }\n", "p:2: ", "whole number");
 }
 
 TEST(PathFile, ReadsEveryStep) {

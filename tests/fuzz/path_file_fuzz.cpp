@@ -43,6 +43,8 @@ ST_FUZZ(path_toml,
         "[[step]]\narc = { radius_m = 0.4, angle_deg = 90 }\n[[step]]\nwait = 2.0\n",
         "[[step]]\ncircle = { radius_m = 0.5, turns = 1, direction = \"right\" }\n",
         "[[step]]\nsquare = { side_m = 1.0 }\n",
+        "area = { x_m = [-1, 2], y_m = [-1, 1] }\n[[step]]\npolygon = { sides = 5, side_m = 0.5 }\n",
+        "[[step]]\nfigure_eight = { radius_m = 0.4, turns = 2, direction = \"left\" }\n",
         "[[step]]\nrepeat = { times = 3, steps = [ { line = 0.5 }, { turn = 120 } ] }\n") {
   try_to([&] { return parse_path_toml(text_of(data), "p"); });
 }

@@ -10,11 +10,15 @@
 #include "algo/control/dead_reckoning.hpp"
 #include "algo/control/follower.hpp"
 #include "firmware_like/path_file.hpp"
+#include "firmware_like/safety_supervisor.hpp"
 #include "hal/clock.hpp"
 #include "hal/create/drive_base.hpp"
+#include "hal/create/remote_guard.hpp"
 #include "hal/error.hpp"
+#include "hal/system/key_stop.hpp"
 #include "hal/system/stop_signal.hpp"
 #include "tools/startrack/commands.hpp"
+#include "tools/startrack/robot_options.hpp"
 
 namespace st {
 namespace {
@@ -26,49 +30,42 @@ constexpr double kSettle_s = 0.1, kLongestSettle_s = 1.0;
 
 struct Arguments {
   RobotOptions robot;
-  std::string model, path;
+  std::string model, path, on_bump = "end";
+  std::string listen;
+  bool rules = false, guard = false;
 };
-
-const char* advice(RobotFault fault) {
-  switch (fault) {
-    case RobotFault::kSilent:
-      return "nothing comes from it; stop it by hand if it moves, then check its battery and cable";
-    case RobotFault::kDisconnected:
-      return "the port went away; plug the cable in again, and stop the robot by hand if it moves";
-    case RobotFault::kBump:
-      return "it ran into something; clear its way";
-    case RobotFault::kCliff:
-      return "it stands at an edge; put it back on the floor";
-    case RobotFault::kWheelDrop:
-      return "a wheel hangs in the air; put it back on the floor";
-    case RobotFault::kLeftSafeMode:
-      return "it left Safe mode by itself; take it off the charger and start again";
-    default:
-      return "";
-  }
-}
 
 class Drive {
  public:
-  Drive(DriveBase& robot, const Path& path)
+  Drive(DriveBase& robot, const Path& path, Reaction on_bump)
       : robot_(robot),
         path_(path),
         follower_(path, robot.geometry().wheel_base_m),
+        supervisor_(on_bump),
         reckoning_(robot.geometry().wheel_base_m),
         live_(isatty(STDERR_FILENO) != 0) {}
 
   // Until the path is done, a fault, or a signal.
   void follow() {
     double last_s = now_s();
-    while (!follower_.done() && !ended()) {
-      const double t_s = now_s();
-      const WheelSpeeds speeds = follower_.step(std::min(t_s - last_s, kLongestTick_s), kTick_s);
+    WheelSpeeds speeds;
+    while (!follower_.done() && stop_signal() == 0) {
+      const double t_s = now_s(), passed_s = std::min(t_s - last_s, kLongestTick_s);
       last_s = t_s;
-      robot_.drive(speeds.left_mps, speeds.right_mps);
       listen();
+      const Reaction reaction =
+          supervisor_.judge(t_s, status_, {}, 0.5 * (speeds.left_mps + speeds.right_mps));
+      if (reaction == Reaction::kEnd) break;
+      speeds = {};
+      if (reaction == Reaction::kHold)
+        follower_.hold(passed_s);
+      else
+        speeds = follower_.step(passed_s, kTick_s);
+      robot_.drive(speeds.left_mps, speeds.right_mps);
       show();
       wait_until(t_s + kTick_s);
     }
+    fault_ = follower_.done() || stop_signal() != 0 ? RobotFault::kNone : supervisor_.fault();
   }
 
   // Stops. The robot stands when its wheels report nothing any more: only then is its last pose the end.
@@ -105,7 +102,6 @@ class Drive {
 
  private:
   static double now_s() { return static_cast<double>(system_clock().monotonic_ns()) * 1e-9; }
-  bool ended() const { return fault_ != RobotFault::kNone || stop_signal() != 0; }
 
   static void wait_until(double t_s) {
     pollfd interrupted{stop_signal_fd(), POLLIN, 0};  // Ctrl-C does not wait for the tick
@@ -120,17 +116,6 @@ class Drive {
       reckoning_.add(sample);
       if (sample.left_m != 0 || sample.right_m != 0) moved_s_ = now_s();
     }
-    if (status_.fault == RobotFault::kLowBattery)
-      warn_of_battery();
-    else if (fault_ == RobotFault::kNone)
-      fault_ = status_.fault;
-  }
-
-  void warn_of_battery() {
-    if (!battery_warned_)
-      std::fprintf(stderr, "startrack: the robot's battery is low (%.1f V); charge it soon\n",
-                   status_.battery_mv * 1e-3);
-    battery_warned_ = true;
   }
 
   void show() {
@@ -138,40 +123,85 @@ class Drive {
     shown_s_ = follower_.time_s();
     const Pose2 at = reckoning_.pose();
     const PathSample target = follower_.target();
+    const RobotFault held_by = supervisor_.fault();
     std::fprintf(
         stderr,
-        "\r%6.1f / %.1f s  x %+.3f y %+.3f m yaw %+7.1f deg  path x %+.3f y %+.3f yaw %+7.1f  %.1f V ",
-        shown_s_, path_.duration_s(), at.x, at.y, at.yaw * 180 / kPi, target.x_m, target.y_m,
-        target.yaw_rad * 180 / kPi, status_.battery_mv * 1e-3);
+        "\r%-10s %6.1f / %.1f s  x %+.3f y %+.3f m yaw %+7.1f deg  path x %+.3f y %+.3f yaw %+7.1f  %.1f V ",
+        held_by == RobotFault::kNone ? "drives" : name_of(held_by), shown_s_, path_.duration_s(), at.x, at.y,
+        at.yaw * 180 / kPi, target.x_m, target.y_m, target.yaw_rad * 180 / kPi, status_.battery_mv * 1e-3);
   }
 
   DriveBase& robot_;
   const Path& path_;
   OpenLoopFollower follower_;
+  SafetySupervisor supervisor_;
   DeadReckoning reckoning_;
   FixedVector<OdometrySample, 64> odometry_;
   RobotStatus status_;
   RobotFault fault_ = RobotFault::kNone;
   double moved_s_ = 0, shown_s_ = 0;
-  bool live_, battery_warned_ = false;
+  bool live_;
 };
 
-int run(const Arguments& arguments) {
+RobotOptions options_of(const Arguments& arguments) {
   RobotOptions options = arguments.robot;
   options.model_given = !arguments.model.empty();
   if (arguments.model == "create1") options.model = RobotModel::kCreate1;
+  return options;
+}
+
+int drive(const Arguments& arguments) {
+  const RobotOptions options = options_of(arguments);
   const Path path = load_path(arguments.path);
   watch_stop_signals();
   const std::unique_ptr<DriveBase> robot = open_robot(options);
-  Drive drive(*robot, path);
+  if (options.port != "sim" && !arm_at_terminal()) return static_cast<int>(ExitCode::kInterrupted);
+  const KeyStop any_key;
+  Drive drive(*robot, path, reaction_on_bump(arguments.on_bump));
   drive.follow();
   drive.settle();
   robot->close();
   drive.print_result();
   if (drive.fault() != RobotFault::kNone)
-    throw Failure(ExitCode::kDeviceFault,
-                  "robot " + options.port + ": " + name_of(drive.fault()) + ": " + advice(drive.fault()));
+    throw Failure(ExitCode::kDeviceFault, "robot " + options.port + ": " + name_of(drive.fault()) + ": " +
+                                              rule_of(drive.fault()).what_to_do);
   return static_cast<int>(stop_signal() != 0 ? ExitCode::kInterrupted : ExitCode::kDone);
+}
+
+// The safety rules as a table, for people.
+void print_rules() {
+  std::printf("%-15s %-52s %-48s %-22s %s\n", "rule", "trigger", "limit", "the run", "stands within");
+  for (const SafetyRow& row : safety_rules())
+    std::printf("%-15s %-52s %-48s %-22s %d ms\n", row.name, row.trigger, row.limit, name_of(row.reaction),
+                row.stands_within_ms);
+}
+
+// At the robot's end of a network.
+int guard(const Arguments& arguments) {
+  if (arguments.robot.port.empty() || arguments.listen.empty())
+    throw Failure(ExitCode::kBadInput, "--guard needs --robot PORT and --listen [HOST:]PORT");
+  watch_stop_signals();
+  RemoteGuard remote(options_of(arguments), arguments.listen);
+  std::printf("guard: a Create %d at %s; programs reach it at port %d\n",
+              remote.model() == RobotModel::kCreate1 ? 1 : 2, arguments.robot.port.c_str(), remote.port());
+  std::fflush(stdout);
+  if (!remote.serve())
+    throw Failure(
+        ExitCode::kDeviceFault,
+        "robot " + arguments.robot.port + ": the guard process ended; look at the robot, and start it again");
+  return static_cast<int>(ExitCode::kInterrupted);
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.rules) {
+    print_rules();
+    return 0;
+  }
+  if (arguments.guard) return guard(arguments);
+  if (arguments.robot.port.empty() || arguments.path.empty())
+    throw Failure(ExitCode::kBadInput,
+                  "drive needs --robot PORT and --path FILE; see startrack drive --help");
+  return drive(arguments);
 }
 
 }  // namespace
@@ -181,14 +211,25 @@ void add_drive(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("drive", "drive the robot along a path by dead reckoning, without a camera");
   command->footer(
-      "Ctrl-C stops the robot. The last line on stdout says where its wheels think it is.\n"
-      "Example: startrack drive --robot /dev/ttyUSB0 --path examples/paths/circle-0.5.toml\n"
-      "         startrack drive --robot sim --path examples/paths/square-1m.toml");
-  command->add_option("--robot", arguments->robot.port, "a serial device such as /dev/ttyUSB0, or sim")
-      ->required();
-  command->add_option("--path", arguments->path, "path program: .toml, or .csv way points")->required();
+      "Ctrl-C, or any key, stops the robot. The last line on stdout says where its wheels think it is.\n"
+      "Examples:\n"
+      "  startrack drive --robot /dev/ttyUSB0 --path examples/paths/circle-0.5.toml\n"
+      "  startrack drive --robot sim --path examples/paths/square-1m.toml\n"
+      "  startrack drive --guard --robot /dev/ttyUSB0 --listen 0.0.0.0:7170    # on the robot's own "
+      "computer\n"
+      "  startrack drive --robot tcp:192.168.1.20:7170 --path examples/paths/circle-0.5.toml\n"
+      "  startrack drive --rules        # when it stops, and why");
+  command->add_option("--path", arguments->path, "path program: .toml, or .csv way points")
+      ->type_name("FILE");
+  add_drive_options(*command, arguments->robot, arguments->on_bump);
   command->add_option("--model", arguments->model, "create1 or create2; found out when left out")
       ->check(CLI::IsMember({"create1", "create2"}));
+  command->add_flag("--guard", arguments->guard,
+                    "hold --robot for a program elsewhere, and stop it when that falls silent");
+  command
+      ->add_option("--listen", arguments->listen, "with --guard: where; without HOST for this computer only")
+      ->type_name("[HOST:]PORT");
+  command->add_flag("--rules", arguments->rules, "print the safety rules, and drive nothing");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

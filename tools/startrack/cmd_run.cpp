@@ -1,6 +1,7 @@
 // startrack run: the live loop.
 #include <memory>
 
+#include "tools/startrack/robot_options.hpp"
 #include "tools/startrack/session_command.hpp"
 
 namespace st {
@@ -19,7 +20,8 @@ void add_run(CLI::App& app, int& exit_code) {
                    "kinect[:INDEX or SERIAL], sim:SCENE, or a recording's folder")
       ->required()
       ->type_name("SRC");
-  command->add_option("--robot", options->robot.port, "serial port of the Create, or sim")->type_name("PORT");
+  auto on_bump = std::make_shared<std::string>("end");
+  add_drive_options(*command, options->robot, *on_bump);
   command
       ->add_option_function<std::uint64_t>(
           "--seed",
@@ -27,7 +29,8 @@ void add_run(CLI::App& app, int& exit_code) {
           "of the simulated room and robot")
       ->default_str("1");
   add_session_options(*command, *options);
-  command->callback([options, &exit_code] {
+  command->callback([options, on_bump, &exit_code] {
+    options->on_bump = reaction_on_bump(*on_bump);
     if (!options->robot.port.empty() && options->path_file.empty())
       throw Failure(ExitCode::kBadInput,
                     "--robot " + options->robot.port + " needs --path FILE: what shall it drive?");

@@ -86,6 +86,7 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
 int run_and_report(const SessionOptions& options) {
   const SessionResult result = run_session(options);
   if (!result.trouble.empty()) std::fprintf(stderr, "startrack: %s\n", result.trouble.c_str());
+  if (result.folder.empty()) return static_cast<int>(result.code);
   print_run_table(result.folder, options.path_file);
   if (!options.path_file.empty()) std::printf("report: %s\n", write_report(result.folder).c_str());
   std::printf("run: %s\n", result.folder.c_str());

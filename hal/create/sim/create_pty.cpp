@@ -50,6 +50,21 @@ int line_baud(int master) {
 }  // namespace
 
 CreatePty::CreatePty(const CreatePtyOptions& options) : options_(options), engine_(options.robot) {
+  open_pair();
+  try {
+    make_link();
+  } catch (...) {
+    close_pair();
+    throw;
+  }
+}
+
+CreatePty::~CreatePty() {
+  remove_link();
+  close_pair();
+}
+
+void CreatePty::open_pair() {
   master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   char name[64];
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
@@ -63,21 +78,31 @@ CreatePty::CreatePty(const CreatePtyOptions& options) : options_(options), engin
   tcgetattr(slave_, &mode);
   cfmakeraw(&mode);  // or the terminal would echo the robot's bytes back to it
   tcsetattr(slave_, TCSANOW, &mode);
-  try {
+}
+
+void CreatePty::close_pair() {
+  if (pulled()) return;
+  close(slave_);
+  close(master_);
+  master_ = slave_ = -1;
+}
+
+void CreatePty::apply(WorldEventKind kind) {
+  if (kind == WorldEventKind::kPull) {
+    remove_link();
+    close_pair();
+  } else if (kind == WorldEventKind::kReplug && pulled()) {
+    open_pair();
     make_link();
-  } catch (...) {
-    close(slave_);
-    close(master_);
-    throw;
+  } else {
+    sim::apply(kind, engine_);
   }
 }
 
-CreatePty::~CreatePty() {
+void CreatePty::remove_link() {
   char target[256];
   const ssize_t n = readlink(options_.link_path.c_str(), target, sizeof target);
   if (n > 0 && std::string(target, static_cast<std::size_t>(n)) == path_) unlink(options_.link_path.c_str());
-  close(slave_);
-  close(master_);
 }
 
 void CreatePty::make_link() {
@@ -95,6 +120,10 @@ void CreatePty::make_link() {
 
 void CreatePty::exchange_bytes() {
   std::uint8_t bytes[4096];
+  if (pulled()) {
+    engine_.transmit(bytes);
+    return;
+  }
   engine_.set_host_baud(line_baud(master_));
   const ssize_t got = read(master_, bytes, sizeof bytes);
   if (got > 0) engine_.receive({bytes, static_cast<std::size_t>(got)});
@@ -104,9 +133,29 @@ void CreatePty::exchange_bytes() {
   static_cast<void>(sent);
 }
 
+SimStateEntry CreatePty::state(std::int64_t now_ns) const {
+  const DiffDriveBody& body = engine_.body();
+  const Pose2 pose = body.pose();
+  const std::uint32_t conditions =
+      (engine_.asleep() ? kSimAsleep : 0u) | (engine_.in_script_wait() ? kSimInScriptWait : 0u) |
+      (engine_.world().on_charger ? kSimOnCharger : 0u) | (pulled() ? kSimPulled : 0u);
+  return {now_ns,
+          pose.x,
+          pose.y,
+          pose.yaw,
+          body.left_mps(),
+          body.right_mps(),
+          body.v(),
+          body.w(),
+          engine_.wanted_mmps(0),
+          engine_.wanted_mmps(1),
+          engine_.mode(),
+          conditions};
+}
+
 void CreatePty::run(const std::function<bool(double)>& ended) {
-  std::unique_ptr<SimStateWriter> state;
-  if (!options_.state_path.empty()) state = std::make_unique<SimStateWriter>(options_.state_path);
+  std::unique_ptr<SimStateWriter> state_file;
+  if (!options_.state_path.empty()) state_file = std::make_unique<SimStateWriter>(options_.state_path);
   std::vector<WorldEvent> events = options_.events;
   std::stable_sort(events.begin(), events.end(),
                    [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
@@ -119,14 +168,10 @@ void CreatePty::run(const std::function<bool(double)>& ended) {
     if (until_ns - now_ns > kLongestCatchUp_ns) now_ns = until_ns - kSlice_ns;
     for (; now_ns + kSlice_ns <= until_ns; now_ns += kSlice_ns) {
       for (; next_event < events.size() && events[next_event].at_s <= t_s; ++next_event)
-        apply(events[next_event].kind, engine_);
+        apply(events[next_event].kind);
       engine_.step(CreateEngine::kSlice_s);
       t_s += CreateEngine::kSlice_s;
-      const DiffDriveBody& body = engine_.body();
-      const Pose2 pose = body.pose();
-      if (state)
-        state->publish({now_ns + kSlice_ns, pose.x, pose.y, pose.yaw, body.left_mps(), body.right_mps(),
-                        body.v(), body.w()});
+      if (state_file) state_file->publish(state(now_ns + kSlice_ns));
     }
   }
 }

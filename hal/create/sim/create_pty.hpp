@@ -7,6 +7,7 @@
 
 #include "hal/create/sim/create_engine.hpp"
 #include "hal/create/sim/world_script.hpp"
+#include "hal/create/sim_state.hpp"
 
 namespace st::sim {
 
@@ -28,11 +29,19 @@ class CreatePty {
   const std::string& path() const { return path_; }  // of the end that a driver opens
   const CreateEngine& engine() const { return engine_; }
 
+  // What happens to the robot, or to its cable: see WorldEventKind.
+  void apply(WorldEventKind kind);
+  bool pulled() const { return master_ < 0; }
+
   // Lives until `ended` says so; asked about once a millisecond.
   void run(const std::function<bool(double t_s)>& ended);
 
  private:
+  void open_pair();
+  void close_pair();
   void make_link();
+  void remove_link();
+  SimStateEntry state(std::int64_t now_ns) const;
   void exchange_bytes();
 
   CreatePtyOptions options_;

@@ -20,6 +20,10 @@ void Odometer::advance(const double wheel_mps[2], const double commanded_mps[2],
   const double metres_per_count = kPi * geometry_.wheel_diameter_m / geometry_.counts_per_turn;
   double travel_m[2] = {0, 0};
   for (int i = 0; i < 2; ++i) {
+    // Counts come from the edges of a slotted wheel: where it truly turns back, the edge it passed last is
+    // the next one.
+    if (wheel_mps[i] * turned_mps_[i] < 0) fraction_[i] = 1 - fraction_[i];
+    if (wheel_mps[i] != 0) turned_mps_[i] = wheel_mps[i];
     if (commanded_mps[i] != 0)
       direction_[i] = commanded_mps[i] > 0 ? 1 : -1;
     else if (wheel_mps[i] == 0)

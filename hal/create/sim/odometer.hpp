@@ -20,6 +20,10 @@ class Odometer {
   std::uint16_t count(int wheel) const { return counts_[wheel]; }
   int read_distance_mm() { return read(distance_mm_); }
   int read_angle_deg() { return read(angle_deg_); }
+  double distance_mm() const { return distance_mm_; }
+  double angle_deg() const { return angle_deg_; }
+  void clear_distance() { distance_mm_ = 0; }
+  void clear_angle() { angle_deg_ = 0; }
 
  private:
   int read(double& sum) const;
@@ -28,7 +32,8 @@ class Odometer {
   bool keeps_fraction_;
   std::uint16_t counts_[2];
   int direction_[2] = {1, 1};
-  double fraction_[2] = {0, 0};  // of the next count
+  double fraction_[2] = {0, 0};    // of the next count
+  double turned_mps_[2] = {0, 0};  // how each wheel turned last
   double distance_mm_ = 0, angle_deg_ = 0;
 };
 

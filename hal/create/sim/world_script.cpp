@@ -12,16 +12,41 @@ constexpr struct {
   const char* name;
   WorldEventKind kind;
 } kEvents[] = {{"bump", WorldEventKind::kBump},
+               {"bump-left", WorldEventKind::kBumpLeft},
+               {"bump-right", WorldEventKind::kBumpRight},
                {"cliff", WorldEventKind::kCliff},
                {"wheel-drop", WorldEventKind::kWheelDrop},
                {"charger", WorldEventKind::kCharger},
+               {"charging-fault", WorldEventKind::kChargingFault},
+               {"dock", WorldEventKind::kDock},
+               {"wall", WorldEventKind::kWall},
+               {"virtual-wall", WorldEventKind::kVirtualWall},
+               {"blocked", WorldEventKind::kBlocked},
+               {"button", WorldEventKind::kButton},
                {"unplug", WorldEventKind::kUnplug},
+               {"mute", WorldEventKind::kMute},
                {"low-battery", WorldEventKind::kLowBattery},
                {"reset", WorldEventKind::kReset},
                {"text", WorldEventKind::kText},
+               {"sleep", WorldEventKind::kSleep},
+               {"wake", WorldEventKind::kWake},
+               {"pull", WorldEventKind::kPull},
+               {"replug", WorldEventKind::kReplug},
                {"clear", WorldEventKind::kClear}};
 
 }  // namespace
+
+std::optional<WorldEventKind> world_event_named(std::string_view name) {
+  for (const auto& row : kEvents)
+    if (name == row.name) return row.kind;
+  return std::nullopt;
+}
+
+std::string world_event_names() {
+  std::string names;
+  for (const auto& row : kEvents) names += std::string(names.empty() ? "" : ", ") + row.name;
+  return names;
+}
 
 WorldEvent parse_world_event(const std::string& text) {
   WorldEvent event;
@@ -29,16 +54,14 @@ WorldEvent parse_world_event(const std::string& text) {
   if (colon != std::string::npos) {
     const char* end = text.data() + colon;
     const auto [stop, error] = std::from_chars(text.data(), end, event.at_s);
-    if (error == std::errc() && stop == end && event.at_s >= 0)
-      for (const auto& row : kEvents)
-        if (text.substr(colon + 1) == row.name) {
-          event.kind = row.kind;
-          return event;
-        }
+    const std::optional<WorldEventKind> kind = world_event_named(text.substr(colon + 1));
+    if (error == std::errc() && stop == end && event.at_s >= 0 && kind) {
+      event.kind = *kind;
+      return event;
+    }
   }
-  std::string names;
-  for (const auto& row : kEvents) names += std::string(names.empty() ? "" : ", ") + row.name;
-  throw Failure(ExitCode::kBadInput, "--at " + text + ": not SECONDS:EVENT; events are " + names);
+  throw Failure(ExitCode::kBadInput,
+                "--at " + text + ": not SECONDS:EVENT; events are " + world_event_names());
 }
 
 void apply(WorldEventKind kind, CreateEngine& engine) {
@@ -46,6 +69,12 @@ void apply(WorldEventKind kind, CreateEngine& engine) {
   switch (kind) {
     case WorldEventKind::kBump:
       world.bump_left = world.bump_right = true;
+      return;
+    case WorldEventKind::kBumpLeft:
+      world.bump_left = true;
+      return;
+    case WorldEventKind::kBumpRight:
+      world.bump_right = true;
       return;
     case WorldEventKind::kCliff:
       world.cliffs = 2;
@@ -56,6 +85,37 @@ void apply(WorldEventKind kind, CreateEngine& engine) {
     case WorldEventKind::kCharger:
       world.on_charger = true;
       return;
+    case WorldEventKind::kChargingFault:
+      world.on_charger = true;
+      world.charging_state = 6;
+      return;
+    case WorldEventKind::kDock:
+      world.dock_near = true;
+      return;
+    case WorldEventKind::kWall:
+      world.wall = true;
+      return;
+    case WorldEventKind::kVirtualWall:
+      world.virtual_wall = true;
+      return;
+    case WorldEventKind::kBlocked:
+      world.blocked = true;
+      return;
+    case WorldEventKind::kButton:
+      world.buttons = 1;  // Play or Clean
+      return;
+    case WorldEventKind::kMute:
+      world.mute = true;
+      return;
+    case WorldEventKind::kSleep:
+      engine.fall_asleep();
+      return;
+    case WorldEventKind::kWake:
+      engine.press_power();
+      return;
+    case WorldEventKind::kPull:
+    case WorldEventKind::kReplug:
+      return;  // of the pseudo-terminal, not of the robot
     case WorldEventKind::kUnplug:
       world.unplugged = true;
       return;
@@ -69,7 +129,7 @@ void apply(WorldEventKind kind, CreateEngine& engine) {
       return;
     }
     case WorldEventKind::kText:
-      engine.say("\r\nbat:   min 3  sec 10  mV 15613  mA -212  deg-C 24\r\n");
+      engine.say(kBatteryText);
       return;
     case WorldEventKind::kClear:
       world = CreateWorld{};

@@ -105,7 +105,7 @@ TEST(CreateRobot, TheLogHoldsEveryByteAndDecodesToTheSameWay) {
   CHECK(reader.model() == RobotModel::kCreate2);
   DeadReckoning replayed(0.235);
   const RobotBytes decoder =
-      decode_odometry(*reader.model(), [&](const OdometrySample& s) { replayed.add(s); });
+      decode_odometry(*reader.model(), reader.geometry(), [&](const OdometrySample& s) { replayed.add(s); });
   bool safe = false, goodbye = false;
   double last_t_s = 0;
   reader.pump_until_time(1e12, [&](double t_s, bool rx, std::span<const std::uint8_t> bytes) {
@@ -175,6 +175,53 @@ TEST(CreateRobot, ARobotThatVanishesIsDisconnected) {
   drive.robot->close();
 }
 
+// The robot drives on while the cable is out; when it is back, it stands, and drives only after a stop().
+TEST(CreateRobot, ComesBackInAStandstillAfterItsCableWasPulled) {
+  for (const std::string out : {"pull", "unplug"}) {
+    const std::string in = out == "pull" ? "replug" : "clear";
+    SimulatedRobot simulated({"--at", "1.5:" + out, "--at", "3:" + in});
+    Drive drive{open_robot(on_port(simulated.port())), DeadReckoning(0.235), {}};
+    const auto keep_until = [&](auto done) {
+      FixedVector<OdometrySample, 64> odometry;
+      for (int i = 0; i < 400 && !done(); ++i, sleep_ms(20)) {
+        drive.robot->drive(0.2, 0.2);
+        odometry.clear();
+        drive.robot->poll(odometry, drive.status);
+      }
+      CHECK(done());
+    };
+    keep_until([&] { return drive.status.fault != RobotFault::kNone; });
+    CHECK(drive.status.fault == (out == "pull" ? RobotFault::kDisconnected : RobotFault::kSilent));
+    DOUBLES_EQUAL(0.2, simulated.now().v_mps, 1e-6);  // which no software can help
+    keep_until([&] { return drive.status.fault == RobotFault::kNone && drive.status.oi_mode == 2; });
+    LONGS_EQUAL(out == "pull" ? 1 : 0, drive.status.reconnects);
+    drive.keep(0.2, 0.2, 400);
+    DOUBLES_EQUAL(0.0, simulated.now().v_mps, 0);
+    drive.robot->stop();
+    drive.keep(0.2, 0.2, 400);
+    DOUBLES_EQUAL(0.2, simulated.now().v_mps, 1e-6);
+  }
+}
+
+TEST(CreateRobot, FindsASlowRobotAndSpeedsItUp) {
+  SimulatedRobot simulated({"--baud", "19200"});
+  Drive drive{open_robot(on_port(simulated.port())), DeadReckoning(0.235), {}};
+  drive.keep(0.2, 0.2, 300);
+  CHECK(drive.status.good_frames > 10);
+}
+
+TEST(CreateRobot, MeasuredWheelsChangeWhatItIsToldAndWhatItTells) {
+  SimulatedRobot simulated({"--left-scale", "0.95", "--right-scale", "0.95", "--base-scale", "1.1"});
+  RobotOptions options = on_port(simulated.port());
+  options.wheels = {0.235 * 1.1, 0.072 * 0.95, 0};
+  Drive drive{open_robot(options), DeadReckoning(0.235 * 1.1), {}};
+  drive.keep(0.15, 0.25, 1000);
+  DOUBLES_EQUAL(0.2, simulated.now().v_mps, 0.002);
+  drive.keep(0, 0, 400);
+  DOUBLES_EQUAL(simulated.now().yaw_rad, drive.reckoning.pose().yaw, 0.01);
+  DOUBLES_EQUAL(simulated.now().x_m, drive.reckoning.pose().x, 0.003);
+}
+
 TEST(CreateRobot, SaysWhatToDoWhenItCannotOpen) {
   STRCMP_CONTAINS("no such port", refusal(on_port("/dev/no-such-robot")).c_str());
   STRCMP_CONTAINS("not a serial port", refusal(on_port("/dev/null")).c_str());
@@ -203,7 +250,7 @@ TEST(CreateRobot, WakesARobotThatWaitsForData) {
        {std::string("\x80\x91\x00", 3), std::string("\x80\xa7\x01", 3), std::string("\x80\x8c\x00\x10", 4)}) {
     SimulatedRobot simulated;
     {
-      SerialPort port(simulated.port(), 115200);
+      RobotPort port(simulated.port(), 115200);
       port.write({reinterpret_cast<const std::uint8_t*>(torn.data()), torn.size()});
       sleep_ms(50);
     }

@@ -4,8 +4,8 @@
 #include <poll.h>
 #include <pty.h>
 #include <sys/socket.h>
-#include <termios.h>
 
+#include <filesystem>
 #include <vector>
 
 #include "tests/hal/create/processes.hpp"
@@ -45,20 +45,32 @@ Bytes joined(const Bytes& a, const Bytes& b) {
 }  // namespace
 
 TEST_GROUP(Guard) {
+  TemporaryFolder folder;
+  std::string name = folder.file("robot");
   int master = -1, port = -1;
   Guard guard;
 
+  // A port under the same name as the one before, as a USB adapter has it through udev.
+  void plug_in() {
+    char device[64];
+    CHECK_EQUAL(0, openpty(&master, &port, device, nullptr, nullptr));
+    std::filesystem::remove(name);
+    std::filesystem::create_symlink(device, name);
+  }
+  void pull() {
+    close(port);
+    close(master);
+    master = port = -1;
+  }
   void setup() override {
-    CHECK_EQUAL(0, openpty(&master, &port, nullptr, nullptr, nullptr));
-    termios mode{};
-    tcgetattr(port, &mode);
-    cfmakeraw(&mode);
-    tcsetattr(port, TCSANOW, &mode);
+    plug_in();
+    set_line(port, 115200);
     fcntl(port, F_SETFL, O_NONBLOCK);
     GuardOrders orders;
+    orders.linger_ms = 1500;
     orders.stop = oi::halt();
     for (const std::uint8_t byte : kFarewell) orders.farewell.add(byte);
-    guard = start_guard(port, orders);
+    guard = start_guard(port, port_address(name, 115200), orders);
   }
   void teardown() override {
     if (guard.link >= 0) close(guard.link);
@@ -69,6 +81,15 @@ TEST_GROUP(Guard) {
   void check_ended() {
     LONGS_EQUAL(0, wait_for_exit(guard.pid, 2000));
     guard.pid = -1;
+  }
+  // The next message that carries no bytes.
+  int next_message() {
+    Bytes heard(kGuardMessageBytes);
+    for (ssize_t n = 2; n > 1;) {
+      n = recv(guard.link, heard.data(), heard.size(), 0);
+      if (n == 1) return heard[0];
+    }
+    return -1;
   }
   void say(const oi::Command& command) {
     send(guard.link, command.bytes, command.size, MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -134,14 +155,50 @@ TEST(Guard, StopsWhenToldToEnd) {
   check_ended();
 }
 
-TEST(Guard, TellsWhenThePortIsGone) {
-  close(master);
-  master = open("/dev/null", O_RDWR);
-  Bytes heard;
-  std::uint8_t bytes[512];
-  for (ssize_t n = 1; n > 0; n = recv(guard.link, bytes, sizeof bytes, 0)) heard.assign(bytes, bytes + n);
-  CHECK(heard[0] == kGuardPortGone);
+TEST(Guard, TellsWhenThePortIsGoneAndStopsTheRobotFirstOfAllWhenItIsBack) {
+  pull();
+  LONGS_EQUAL(kGuardPortGone, next_message());
+  for (int i = 0; i < 10; ++i, sleep_ms(20)) say(oi::drive_direct(100, 100));  // too late for these
+  plug_in();
+  const Bytes first = drain(master, 200);
+  CHECK(first.size() >= 5);
+  CHECK(Bytes(first.begin(), first.begin() + 5) == kStop);
+  LONGS_EQUAL(kGuardPortBack, next_message());
+  say(oi::drive_direct(100, 100));
+  CHECK(drain(master, 100)[0] == oi::kDriveDirect);
+}
+
+TEST(Guard, WaitsForThePortLongerThanItsProgramLives) {
+  pull();
+  LONGS_EQUAL(kGuardPortGone, next_message());
+  close(guard.link);
+  guard.link = -1;
+  sleep_ms(200);
+  plug_in();
+  CHECK(drain(master, 300) == joined(kStop, kFarewell));
   check_ended();
+}
+
+TEST(Guard, DoesNotWaitForEver) {
+  pull();
+  LONGS_EQUAL(kGuardPortGone, next_message());
+  close(guard.link);
+  guard.link = -1;
+  LONGS_EQUAL(0, wait_for_exit(guard.pid, 5000));
+  guard.pid = -1;
+}
+
+TEST(Guard, LeavesThePortToTheNextProgram) {
+  pull();
+  LONGS_EQUAL(kGuardPortGone, next_message());
+  plug_in();
+  LONGS_EQUAL(kGuardPortBack, next_message());
+  close(guard.link);
+  guard.link = -1;
+  check_ended();
+  const int next = open_port(port_address(name, 115200), 0);
+  CHECK(next >= 0);
+  close(next);
 }
 
 TEST(Guard, IsOutOfReachOfTheTerminal) {

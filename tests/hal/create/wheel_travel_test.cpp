@@ -34,7 +34,7 @@ TEST_GROUP(WheelTravel){};
 
 TEST(WheelTravel, CountsPassThroughTheWrapBothWays) {
   const double m = 0.000444565;  // per count, as the reference says
-  WheelTravel travel(kCreate2);
+  WheelTravel travel(RobotModel::kCreate2, kCreate2);
   OdometrySample sample;
   CHECK_FALSE(travel.update(0.000, encoders(65530, 5), false, sample));
   CHECK(travel.update(0.015, encoders(5, 65530), false, sample));
@@ -43,7 +43,7 @@ TEST(WheelTravel, CountsPassThroughTheWrapBothWays) {
   CHECK(travel.update(0.030, encoders(5, 65530), false, sample));
   DOUBLES_EQUAL(0, sample.left_m, 0);
   // Through the sign change in the middle.
-  WheelTravel middle(kCreate2);
+  WheelTravel middle(RobotModel::kCreate2, kCreate2);
   middle.update(0, encoders(32760, 32775), false, sample);
   CHECK(middle.update(0.015, encoders(32775, 32760), false, sample));
   DOUBLES_EQUAL(15 * m, sample.left_m, 1e-8);
@@ -51,7 +51,7 @@ TEST(WheelTravel, CountsPassThroughTheWrapBothWays) {
 }
 
 TEST(WheelTravel, AJumpIsRefusedAndARestartedRobotIsTakenUpAgain) {
-  WheelTravel travel(kCreate2);
+  WheelTravel travel(RobotModel::kCreate2, kCreate2);
   OdometrySample sample;
   travel.update(0.000, encoders(1000, 1000), false, sample);
   CHECK_FALSE(travel.update(0.015, encoders(9000, 1000), false, sample));
@@ -63,7 +63,7 @@ TEST(WheelTravel, AJumpIsRefusedAndARestartedRobotIsTakenUpAgain) {
 }
 
 TEST(WheelTravel, LostFramesLoseNoEncoderTravel) {
-  WheelTravel travel(kCreate2);
+  WheelTravel travel(RobotModel::kCreate2, kCreate2);
   OdometrySample sample;
   travel.update(0, encoders(0, 0), false, sample);
   CHECK(travel.update(1.0, encoders(1000, 900), true, sample));
@@ -71,7 +71,7 @@ TEST(WheelTravel, LostFramesLoseNoEncoderTravel) {
 }
 
 TEST(WheelTravel, Create1IntegratesTheRequestedSpeeds) {
-  WheelTravel travel(kCreate1);
+  WheelTravel travel(RobotModel::kCreate1, kCreate1);
   OdometrySample sample;
   double left = 0, right = 0;
   for (int i = 0; i <= 100; ++i) {
@@ -87,7 +87,7 @@ TEST(WheelTravel, Create1IntegratesTheRequestedSpeeds) {
 // rounding must not reach the result, and what the wheels were kept from doing must.
 TEST(WheelTravel, Create1AngleCorrectsOnlyWhatRoundingCannotExplain) {
   for (const bool keeps_fraction : {false, true}) {
-    WheelTravel travel(kCreate1);
+    WheelTravel travel(RobotModel::kCreate1, kCreate1);
     OdometrySample sample;
     const double w = 20 * kPi / 180, half = 500 * w * kCreate1.wheel_base_m;
     double yaw = 0, angle = 0;
@@ -108,7 +108,7 @@ TEST(WheelTravel, Create1AngleCorrectsOnlyWhatRoundingCannotExplain) {
 }
 
 TEST(WheelTravel, Create1NoticesThatItDidNotMove) {
-  WheelTravel travel(kCreate1);
+  WheelTravel travel(RobotModel::kCreate1, kCreate1);
   OdometrySample sample;
   double way = 0;
   for (int i = 0; i <= 200; ++i) {
@@ -123,7 +123,7 @@ TEST(WheelTravel, Create1NoticesThatItDidNotMove) {
 }
 
 TEST(WheelTravel, Create1DoesNotCompareAcrossALostReading) {
-  WheelTravel travel(kCreate1);
+  WheelTravel travel(RobotModel::kCreate1, kCreate1);
   OdometrySample sample;
   double way = 0;
   for (int i = 0; i <= 40; ++i) {

@@ -13,7 +13,7 @@ using namespace st::test;
 namespace {
 
 // Stands in for the robot's protocol: every received byte is a sample of that many millimetres.
-RobotBytes millimetres(RobotModel, OdometrySink sink) {
+RobotBytes millimetres(RobotModel, const std::optional<RobotGeometry>&, OdometrySink sink) {
   return [sink](double t_s, bool rx, std::span<const std::uint8_t> bytes) {
     for (const std::uint8_t b : bytes)
       if (rx) sink({t_s, b * 1e-3, b * 2e-3});
@@ -45,6 +45,19 @@ TEST(RobotLog, LinesRoundTrip) {
   CHECK(parse_robot_log_model(robot_log_first_line(RobotModel::kCreate1).substr(0, 15)) ==
         RobotModel::kCreate1);
   CHECK(parse_robot_log_model("# model create2") == RobotModel::kCreate2);
+}
+
+TEST(RobotLog, KeepsTheWheelsThatItWasWrittenWith) {
+  const RobotGeometry measured{0.2381, 0.0713, 508.8};
+  std::string line_read = robot_log_wheels_line(measured);
+  line_read.pop_back();
+  const auto read = parse_robot_log_wheels(line_read);
+  CHECK(read.has_value());
+  DOUBLES_EQUAL(0.2381, read->wheel_base_m, 1e-9);
+  DOUBLES_EQUAL(0.0713, read->wheel_diameter_m, 1e-9);
+  DOUBLES_EQUAL(508.8, read->counts_per_turn, 1e-9);
+  for (const char* line : {"# wheels 0.2 0.07", "# wheels 0.2 0 508", "# wheels -1 1 1", "1.0 rx 00", ""})
+    CHECK(!parse_robot_log_wheels(line));
 }
 
 TEST(RobotLog, WhatIsNoLineIsForeign) {

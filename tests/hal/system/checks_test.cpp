@@ -116,7 +116,7 @@ TEST(Checks, TheKernelsWebcamDriverIsFound) {
   CHECK(remedy_says(findings, "gspca_kinect", "blacklist"));
 }
 
-TEST(Checks, ASerialPortAndItsLatencyAreFound) {
+TEST(Checks, ARobotPortAndItsLatencyAreFound) {
   machine.file("/dev/ttyUSB3", "");
   machine.file("/sys/bus/usb-serial/devices/ttyUSB3/latency_timer", "16");
   auto findings = check_devices(machine.root);

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "algo/control/dead_reckoning.hpp"
 #include "algo/control/follower.hpp"
 #include "algo/core/scalar_math.hpp"
-#include "hal/create/oi_stream.hpp"
+#include "hal/create/odometry_decoder.hpp"
 
 using namespace st;
 using sim::CreateEngine;
@@ -242,6 +243,159 @@ TEST(CreateEngine, ReadingTheAngleTooOftenLosesItWhereTheFractionIsNotKept) {
       DOUBLES_EQUAL(turned, sum, 1.5);
     else
       LONGS_EQUAL(0, sum);
+  }
+}
+
+TEST(CreateEngine, FallsAsleepIdleInPassiveAndHearsNothingUntilItsButtonIsPressed) {
+  CreateEngine robot({});
+  say(robot, {128}, 299);
+  LONGS_EQUAL(oi::kPassive, robot.mode());
+  robot.step(2);
+  CHECK(robot.asleep());
+  say(robot, {128, 128, 142, 35}, 1);
+  UNSIGNED_LONGS_EQUAL(0, hear(robot).size());
+  robot.press_power();
+  say(robot, {128}, 0.1);
+  LONGS_EQUAL(1, ask(robot, 35));
+  CreateEngine one(create1()), safe({});
+  say(one, {128}, 400);
+  CHECK_FALSE(one.asleep());  // its specification knows no sleep
+  say(safe, {128, 131}, 400);
+  CHECK_FALSE(safe.asleep());  // in Safe it runs its battery down instead
+}
+
+TEST(CreateEngine, SeeksTheDockByItselfAndStandsOnIt) {
+  CreateEngine robot({});
+  robot.world().dock_near = true;
+  say(robot, {128, 142, 17}, 0.1);
+  LONGS_EQUAL(173, hear(robot).back());
+  say(robot, {143}, 1);
+  CHECK(robot.body().v() > 0);
+  LONGS_EQUAL(oi::kPassive, robot.mode());
+  robot.step(3);
+  CHECK(robot.standing());
+  CHECK(robot.world().on_charger);
+  LONGS_EQUAL(2, ask(robot, 34));
+  robot.world().charging_state = 6;  // which the Create 2's own table allows
+  LONGS_EQUAL(6, ask(robot, 21));
+  CreateEngine stopped({});
+  stopped.world().dock_near = true;
+  say(stopped, {128, 143}, 1);
+  say(stopped, {131}, 1);  // what ends it
+  CHECK(stopped.standing());
+}
+
+TEST(CreateEngine, BlockedWheelsTellByTheirCurrents) {
+  CreateEngine robot({});
+  say(robot, {128, 131, 145, 0, 200, 0, 200}, 0.5);
+  robot.world().blocked = true;
+  robot.step(1);
+  CHECK(robot.standing());
+  LONGS_EQUAL(24, ask(robot, 14));
+  CHECK(ask(robot, 54) > 1000);
+  LONGS_EQUAL(0, ask(robot, 58));
+}
+
+TEST(CreateEngine, StartsAtTheSpeedItIsTold) {
+  CreateOptions options;
+  options.start_baud = 19200;
+  CreateEngine robot(options);
+  robot.set_host_baud(19200);
+  say(robot, {128}, 0.1);
+  LONGS_EQUAL(1, ask(robot, 35));
+  say(robot, {129, 11}, 0.1);
+  robot.set_host_baud(115200);
+  LONGS_EQUAL(1, ask(robot, 35));
+}
+
+TEST(CreateEngine, HalfFramesAndBytesTwiceAreTheOnlyOnesLost) {
+  CreateOptions options;
+  options.half_frames = 0.2;
+  options.noise.duplicate = 0.002;
+  CreateEngine robot(options);
+  say(robot, {128, 148, 1, 100}, 30);
+  std::vector<std::uint8_t> bytes(400000);
+  bytes.resize(robot.transmit(bytes));
+  StreamParser parser(RobotModel::kCreate2);
+  const std::uint8_t list[] = {100};
+  parser.expect(list);
+  SensorState state;
+  for (const std::uint8_t byte : bytes)
+    for (parser.push(byte); parser.next(state);) LONGS_EQUAL(19, state.value(oi::kTemperature));
+  const double share = static_cast<double>(parser.good_frames()) / 2000;
+  CHECK(share > 0.6 && share < 0.75);  // 0.8 whole ones, of which 0.84 without a doubled byte
+}
+
+TEST(CreateEngine, LightsAndOutputsAreKept) {
+  CreateEngine robot(create1());
+  say(robot, {128, 139, 2, 0, 255}, 0.1);
+  LONGS_EQUAL(0, robot.lights()[0]);  // not in Passive
+  say(robot, {131, 139, 2, 10, 255, 147, 5, 138, 3}, 0.1);
+  LONGS_EQUAL(2, robot.lights()[0]);
+  LONGS_EQUAL(10, robot.lights()[1]);
+  LONGS_EQUAL(5 << 8 | 3, robot.outputs());
+}
+
+// 100 m in both directions, through the wrap of both encoders: only the wheels' own size may show.
+TEST(CreateEngine, OdometryOverAHundredMetresErrsByScaleAlone) {
+  for (const RobotModel model : {RobotModel::kCreate1, RobotModel::kCreate2}) {
+    CreateOptions options;
+    options.model = model;
+    options.errors.left_scale = options.errors.right_scale = 1.02;
+    CreateEngine robot(options);
+    RobotGeometry wheels = oi::default_geometry(model);
+    wheels.wheel_diameter_m *= 1.02;  // as measured
+    OdometryStream stream(model, wheels);
+    DeadReckoning reckoning(wheels.wheel_base_m);
+    Path path;
+    path.limits.speed_mps = 0.4;
+    double travelled_m = 0;
+    for (int i = 0; i < 4; ++i) {
+      path.add_line(15);
+      path.add_turn(kPi / 2);
+      path.add_line(-10);
+      path.add_arc(0.5, -kPi / 2);
+    }
+    path.plan();
+    const std::vector<std::uint8_t> lists[] = {{41, 42, 43, 44}, {41, 42}, {41, 42, 19, 20}};
+    say(robot, {128, 131}, 0.1);
+    hear(robot);
+    OpenLoopFollower follower(path, oi::default_geometry(model).wheel_base_m);
+    const auto listen = [&](double t_s) {
+      const auto bytes = hear(robot);
+      stream.receive(
+          t_s, bytes, [](const SensorState&) {},
+          [&](const OdometrySample& s) {
+            reckoning.add(s);
+            travelled_m += 0.5 * std::fabs(s.left_m + s.right_m);
+          });
+    };
+    double t_s = 0;
+    for (int tick = 0; !follower.done() || tick % 20 != 0; ++tick, t_s += 0.015) {
+      const WheelSpeeds s = follower.step(0.015, 0.015);
+      robot.receive(oi::drive_direct(static_cast<int>(std::lround(s.left_mps * 1000)),
+                                     static_cast<int>(std::lround(s.right_mps * 1000)))
+                        .span());
+      const auto& list = model == RobotModel::kCreate2 ? lists[0] : tick % 20 == 10 ? lists[2] : lists[1];
+      robot.receive(oi::stream(list).span());
+      stream.sent(oi::stream(list).span());
+      robot.step(0.015);
+      listen(t_s);
+    }
+    robot.receive(oi::halt().span());
+    for (int i = 0; i < 20; ++i, t_s += 0.015) {
+      robot.step(0.015);
+      listen(t_s);
+    }
+    const Pose2 truth = robot.body().pose(), told = reckoning.pose();
+    CHECK(travelled_m > 100);
+    const bool encoders = model == RobotModel::kCreate2;
+    DOUBLES_EQUAL(truth.yaw, told.yaw, encoders ? 0.002 : 0.03);
+    CHECK(std::hypot(truth.x - told.x, truth.y - told.y) < (encoders ? 0.005 : 0.3));
+    UT_PRINT(StringFromFormat("%s, %.0f m: %.1f mm and %.2f deg off", encoders ? "Create 2" : "Create 1",
+                              travelled_m, 1000 * std::hypot(truth.x - told.x, truth.y - told.y),
+                              (told.yaw - truth.yaw) * 180 / kPi)
+                 .asCharString());
   }
 }
 

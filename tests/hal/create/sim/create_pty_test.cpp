@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "hal/create/serial_port.hpp"
+#include "hal/create/robot_port.hpp"
 #include "hal/error.hpp"
 #include "tests/hal/create/processes.hpp"
 
@@ -40,7 +40,7 @@ TEST(CreatePty, SeesTheSpeedThatTheDriverSets) {
   sim::CreatePtyOptions options;
   options.events.push_back(sim::parse_world_event("0.05:bump"));
   sim::CreatePty pty(options);
-  SerialPort port(pty.path(), 57600);
+  RobotPort port(pty.path(), 57600);
   const std::uint8_t start[] = {128};
   port.write(start);
   pty.run([](double t_s) { return t_s > 0.1; });

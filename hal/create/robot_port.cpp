@@ -1,14 +1,12 @@
-#include "hal/create/serial_port.hpp"
+#include "hal/create/robot_port.hpp"
 
-#include <fcntl.h>
 #include <glob.h>
 #include <grp.h>
-#include <linux/serial.h>
 #include <poll.h>
-#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <termios.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -19,24 +17,9 @@
 namespace st {
 namespace {
 
+constexpr int kConnect_ms = 3000;
 constexpr int kWriteWait_ms = 200;
-
-speed_t speed_of(int baud) {
-  switch (baud) {
-    case 9600:
-      return B9600;
-    case 19200:
-      return B19200;
-    case 38400:
-      return B38400;
-    case 57600:
-      return B57600;
-    case 115200:
-      return B115200;
-  }
-  throw Failure(ExitCode::kBadInput,
-                "no serial speed of " + std::to_string(baud) + " baud; use 19200, 57600 or 115200");
-}
+constexpr timespec kWakePulse{0, 500'000'000};
 
 std::string ports_present() {
   glob_t found{};
@@ -74,68 +57,48 @@ std::string group_that_may(const std::string& path) {
     case EWOULDBLOCK:
       throw Failure(ExitCode::kDeviceFault,
                     where + "in use by another program; end it (`fuser " + path + "` shows it)");
+    case ECONNREFUSED:
+    case ETIMEDOUT:
+    case EHOSTUNREACH:
+    case ENETUNREACH:
+      throw Failure(ExitCode::kDeviceFault, where + std::strerror(error) +
+                                                "; on the robot's computer run `startrack drive --guard "
+                                                "--robot PORT --listen ADDRESS:PORT`");
     case ENOTTY:
       throw Failure(ExitCode::kDeviceFault, where + "not a serial port; " + ports_present());
   }
   throw Failure(ExitCode::kDeviceFault, where + std::strerror(error));
 }
 
-// 8N1, no flow control, every byte as it is. The modem lines stay as they are at the end: RTS is the robot's
-// BRC pin.
-void make_raw(termios& mode, int baud) {
-  cfmakeraw(&mode);
-  mode.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | PARENB | CRTSCTS | HUPCL);
-  mode.c_cflag |= CLOCAL | CREAD | CS8;
-  mode.c_cc[VMIN] = 1;
-  mode.c_cc[VTIME] = 0;
-  cfsetspeed(&mode, speed_of(baud));
-}
-
-// USB adapters gather bytes for 16 ms by default, which is more than the robot's 15 ms slot. Pseudo-terminals
-// and some drivers have no such setting: frames then come in bursts, and nothing else is lost.
-void ask_for_low_latency(int fd) {
-  serial_struct settings{};
-  if (ioctl(fd, TIOCGSERIAL, &settings) != 0) return;
-  settings.flags |= ASYNC_LOW_LATENCY;
-  ioctl(fd, TIOCSSERIAL, &settings);
-}
-
 }  // namespace
 
-SerialPort::SerialPort(const std::string& path, int baud) : path_(path) {
-  fd_ = open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (fd_ < 0) cannot_open(path, errno);
-  termios mode{};
-  int error = 0;
-  // TIOCEXCL does not bind root, so the lock stands beside it.
-  if (tcgetattr(fd_, &mode) != 0)
-    error = ENOTTY;
-  else if (flock(fd_, LOCK_EX | LOCK_NB) != 0 || ioctl(fd_, TIOCEXCL) != 0)
-    error = errno;
-  if (error != 0) {
-    close(fd_);
-    cannot_open(path, error);
-  }
-  try {
-    set_baud(baud);
-  } catch (...) {
-    close(fd_);
-    throw;
-  }
-  ask_for_low_latency(fd_);
+RobotPort::RobotPort(const std::string& path, int baud) : address_(port_address(path, baud)) {
+  fd_ = open_port(address_, kConnect_ms);
+  if (fd_ < 0) cannot_open(path, -fd_);
 }
 
-SerialPort::~SerialPort() { close(fd_); }
+RobotPort::~RobotPort() { close(fd_); }
 
-void SerialPort::set_baud(int baud) {
-  termios mode{};
-  if (tcgetattr(fd_, &mode) != 0) gone();
-  make_raw(mode, baud);
-  if (tcsetattr(fd_, TCSANOW, &mode) != 0) gone();
+void RobotPort::set_baud(int baud) {
+  address_.baud = baud;
+  if (address_.tcp) return;
+  if (set_line(fd_, baud) != 0) gone();
   tcflush(fd_, TCIFLUSH);
 }
 
-void SerialPort::write(std::span<const std::uint8_t> bytes) {
+bool RobotPort::pulse_wake_line() {
+  const int line = TIOCM_RTS;
+  int before = 0;
+  if (address_.tcp || ioctl(fd_, TIOCMGET, &before) != 0) return false;
+  const bool was_set = (before & line) != 0;
+  if (ioctl(fd_, was_set ? TIOCMBIC : TIOCMBIS, &line) != 0) return false;
+  nanosleep(&kWakePulse, nullptr);
+  ioctl(fd_, was_set ? TIOCMBIS : TIOCMBIC, &line);
+  nanosleep(&kWakePulse, nullptr);
+  return true;
+}
+
+void RobotPort::write(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
     if (n > 0) {
@@ -148,7 +111,7 @@ void SerialPort::write(std::span<const std::uint8_t> bytes) {
   }
 }
 
-std::size_t SerialPort::read(std::span<std::uint8_t> into, int timeout_ms) {
+std::size_t RobotPort::read(std::span<std::uint8_t> into, int timeout_ms) {
   pollfd ready{fd_, POLLIN, 0};
   const int events = poll(&ready, 1, timeout_ms);
   if (events == 0 || (events < 0 && errno == EINTR)) return 0;
@@ -158,9 +121,11 @@ std::size_t SerialPort::read(std::span<std::uint8_t> into, int timeout_ms) {
   gone();
 }
 
-void SerialPort::gone() const {
+void RobotPort::gone() const {
   throw Failure(ExitCode::kDeviceFault,
-                "robot port " + path_ + ": the port went away; check the cable and plug it in again");
+                "robot port " + address_.text +
+                    (address_.tcp ? ": the connection ended; see what the guard at the robot's end says"
+                                  : ": the port went away; check the cable and plug it in again"));
 }
 
 }  // namespace st
