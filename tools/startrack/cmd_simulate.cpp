@@ -1,16 +1,14 @@
 // startrack simulate: a scene as a recording with ground truth.
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <system_error>
 
+#include "firmware_like/path_file.hpp"
 #include "hal/error.hpp"
 #include "hal/sim/sim_recording.hpp"
 #include "tools/startrack/commands.hpp"
@@ -27,27 +25,15 @@ struct Options {
   bool laptop = false, force = false;
 };
 
-// The speeds of a preset path: a table `t,x,y,yaw,v,w` as path.csv has it.
-std::vector<sim::DriveCommand> read_path(const std::string& file) {
-  std::ifstream in(file);
-  std::string line;
-  if (!in || !std::getline(in, line))
-    throw Failure(ExitCode::kBadInput,
-                  file + ": cannot be read; give a path.csv with the columns t,x,y,yaw,v,w");
+// The speeds of a path program, as `run` and `drive` would send them.
+std::vector<sim::DriveCommand> commands_of(const Path& path) {
+  constexpr double kStep_s = 0.02;
   std::vector<sim::DriveCommand> commands;
-  for (int number = 2; std::getline(in, line); ++number) {
-    if (line.empty() || line == "\r") continue;
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream row(line);
-    double t = 0, x = 0, y = 0, yaw = 0, v = 0, w = 0;
-    if (!(row >> t >> x >> y >> yaw >> v >> w) || (!commands.empty() && t <= commands.back().t_s))
-      throw Failure(ExitCode::kBadInput,
-                    file + ": line " + std::to_string(number) + ": want t,x,y,yaw,v,w with rising t");
-    commands.push_back({t, v, w});
+  for (double t = 0; t < path.duration_s(); t += kStep_s) {
+    const PathSample now = sample(path, t);
+    commands.push_back({t, now.v_mps, now.w_rps});
   }
-  if (commands.empty())
-    throw Failure(ExitCode::kBadInput, file + ": holds no row; give a path of at least one");
-  commands.push_back({commands.back().t_s + 0.02, 0, 0});
+  commands.push_back({path.duration_s(), 0, 0});
   return commands;
 }
 
@@ -79,7 +65,7 @@ int simulate(const Options& o) {
   scene.robot = o.robot == "create1" ? RobotModel::kCreate1 : RobotModel::kCreate2;
   scene.laptop = o.laptop;
   scene.seconds = o.seconds;
-  if (!o.path_file.empty()) scene.path = read_path(o.path_file);
+  if (!o.path_file.empty()) scene.path = commands_of(load_path(o.path_file));
   sim::Scene made = sim::make_scene(scene);
   prepare_folder(o);
   catch_signals();
@@ -111,8 +97,9 @@ void add_simulate(CLI::App& app, int& exit_code) {
       ->add_option("--seed", options->seed,
                    "Room, camera, noise and wheel errors; the same seed gives the same bytes")
       ->capture_default_str();
-  command->add_option("--path", options->path_file,
-                      "Preset path of the first robot instead of the scene's own (columns t,x,y,yaw,v,w)");
+  command->add_option(
+      "--path", options->path_file,
+      "Preset path of the first robot instead of the scene's own: TOML program or CSV way points");
   command->add_option("--robot-model", options->robot, "create1 or create2")
       ->check(CLI::IsMember({"create1", "create2"}))
       ->capture_default_str();

@@ -163,10 +163,10 @@ TEST(SimRecording, CommandRefusesAFullFolderUnlessForcedAndThenSparesWhatIsNotIt
 
 TEST(SimRecording, APathFileIsDrivenInTheLab) {
   {
-    std::ofstream path(folder / "line.csv");
-    path << "t,x,y,yaw,v,w\n0,0,0,0,0.2,0\n1,0.2,0,0,0.2,0\n2,0.4,0,0,0,0\n";
+    std::ofstream path(folder / "line.toml");
+    path << "speed_mps = 0.2\n[[step]]\nline = 0.4\n";
   }
-  LONGS_EQUAL(0, simulate("lab --path " + (folder / "line.csv").string() + " --seconds 4.5 --out " +
+  LONGS_EQUAL(0, simulate("lab --path " + (folder / "line.toml").string() + " --seconds 4.5 --out " +
                           (folder / "r").string()));
   const auto truth = lines(folder / "r" / "truth.tum");
   double a[4], b[4];
