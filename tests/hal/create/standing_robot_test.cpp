@@ -4,8 +4,6 @@
 
 #include <set>
 
-#include "tests/sanitized.hpp"
-
 // Last: it redefines new.
 #include <CppUTest/TestHarness.h>
 
