@@ -153,6 +153,8 @@ int driver_of(const RunRecord& run, const RunStudy& study) {
   return best;
 }
 
+}  // namespace
+
 RunStudy study_record(const RunRecord& run) {
   std::vector<ObjectTrack> tracks;
   for (const RunRecord::Object& object : run.objects)
@@ -170,8 +172,6 @@ RunStudy study_record(const RunRecord& run) {
   }
   return study_run(tracks, path, driver_of(run, alone));
 }
-
-}  // namespace
 
 std::string number(double value, int decimals) {
   std::string out;

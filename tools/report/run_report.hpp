@@ -3,9 +3,13 @@
 
 #include <string>
 
+#include "firmware_like/run_study.hpp"
 #include "hal/results/run_record.hpp"
 
 namespace st {
+
+// What the motion in the run says: bases, and the preset path beside the driven one.
+RunStudy study_record(const RunRecord& run);
 
 // HTML with its style, figures (SVG), pictures (PNG) and figures as data (JSON) inside; refers to nothing
 // outside.

@@ -25,7 +25,10 @@ NamedTrajectory load(const std::string& path) { return {path, parse_tum(read_who
 
 // The trajectories of a run: those of its objects, or of its camera.
 std::vector<std::string> trajectories_of(const std::string& run) {
-  if (!fs::exists(run + "/summary.json"))
+  const bool interrupted = !fs::exists(run + "/summary.json");
+  if (interrupted && !fs::exists(run + "/timing.csv"))
+    throw Failure(ExitCode::kBadInput, run + ": is no run; give a run folder, or a file in TUM format");
+  if (interrupted)
     std::fprintf(
         stderr,
         "startrack: %s: was interrupted (it has no summary.json); what was written up to then is scored\n",
@@ -52,7 +55,12 @@ std::string evaluate(const EvaluateOptions& options) {
       throw Failure(ExitCode::kBadInput,
                     path + ": holds no pose; a line is `timestamp tx ty tz qx qy qz qw`");
   }
-  for (const std::string& path : paths) estimates.push_back(load(path));
+  for (const std::string& path : paths) {
+    estimates.push_back(load(path));
+    if (!is_run && estimates.back().trajectory.poses.empty())
+      throw Failure(ExitCode::kBadInput,
+                    path + ": is no TUM trajectory; a line is `timestamp tx ty tz qx qy qz qw`");
+  }
   const bool camera = paths.size() == 1 && fs::path(paths[0]).filename() == "camera.tum";
   if (camera) return evaluate_camera(truths[0], estimates[0]);
   Visibility visibility;

@@ -34,6 +34,12 @@ void add_run(CLI::App& app, int& exit_code) {
     if (!options->robot.port.empty() && options->path_file.empty())
       throw Failure(ExitCode::kBadInput,
                     "--robot " + options->robot.port + " needs --path FILE: what shall it drive?");
+    const std::string& source = options->source.spec;
+    if (!options->robot.port.empty() && !source.starts_with("kinect") && !source.starts_with("sim:"))
+      throw Failure(ExitCode::kBadInput,
+                    "--robot " + options->robot.port +
+                        " needs a camera that sees it now: --source kinect or sim:SCENE; "
+                        "over a recording use startrack replay --path");
     exit_code = run_and_report(*options);
   });
 }

@@ -1,11 +1,12 @@
 #include "tools/startrack/run_table.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "algo/control/circle_fit.hpp"
 #include "hal/results/line_file.hpp"
 #include "hal/results/run_record.hpp"
+#include "tools/report/run_report.hpp"
 
 namespace st {
 namespace {
@@ -23,6 +24,27 @@ void print_path(const Json& path) {
       path["rmse_shape_m"].get<double>() * 1e3, path["heading_rmse_rad"].get<double>() * 57.29577951);
 }
 
+// Preset and driven circle, where the path is one.
+void print_circle(const PathComparison& path) {
+  if (!path.is_circle) return;
+  const CircleFit &preset = path.preset_circle, &driven = path.driven_circle;
+  const double off_m = std::hypot(driven.x_m - preset.x_m, driven.y_m - preset.y_m);
+  std::printf("  circle, preset        radius %.4f m, centre (%.4f, %.4f) m\n", preset.radius_m, preset.x_m,
+              preset.y_m);
+  std::printf("  circle, driven        radius %.4f m, centre (%.4f, %.4f) m: %.1f mm off\n", driven.radius_m,
+              driven.x_m, driven.y_m, 1e3 * off_m);
+}
+
+void print_damage(const RunRecord& run) {
+  int damaged = 0, gaps = 0;
+  for (const RunRecord::EventRow& event : run.events) {
+    damaged += event.event == "damaged" ? 1 : 0;
+    gaps += event.event == "gap" ? 1 : 0;
+  }
+  if (damaged + gaps > 0)
+    std::printf("  recording             %d damaged frames skipped, %d gaps (events.csv)\n", damaged, gaps);
+}
+
 }  // namespace
 
 void print_run_table(const std::string& run_folder, const std::string& path_file) {
@@ -33,7 +55,12 @@ void print_run_table(const std::string& run_folder, const std::string& path_file
                 object["id"].get<int>(), object["tracked"].get<unsigned long long>(),
                 object["lost"].get<unsigned long long>(), object["path_length_m"].get<double>());
   if (summary["objects"].empty()) std::printf("  objects               none: nothing moved\n");
-  if (!path_file.empty()) print_path(summary["path"]);
+  const RunRecord run = read_run(run_folder);
+  print_damage(run);
+  if (!path_file.empty()) {
+    print_circle(study_record(run).path.comparison);
+    print_path(summary["path"]);
+  }
   const Json& cpu = summary["timing"]["cpu_us"];
   const Json& frame = summary["timing"]["frame_us"];
   std::printf("  frame time, CPU       p50 %.2f  p99 %.2f  max %.2f ms\n", milliseconds(cpu["p50"]),
