@@ -48,8 +48,9 @@ void ObjectTracker::lose(Track& track) {
 
 std::size_t ObjectTracker::make_room(Newness newness) {
   const std::size_t k = slot_for(tracks_, newness);
-  if (k == kMaxObjects || tracks_[k].phase == Track::Phase::kFree) return k;
-  evict(tracks_[k]);
+  if (k == kMaxObjects) return k;
+  if (tracks_[k].phase != Track::Phase::kFree) evict(tracks_[k]);
+  previous_[k].surface_pixels = 0;  // the frame before showed another object
   return k;
 }
 

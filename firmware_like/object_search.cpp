@@ -88,6 +88,7 @@ void ObjectTracker::finish_search(const Pose& T_camera_anchor) {
     if (search_.where == Search::Where::kSegment) refuse(search_.box, search_.track);
     return;  // else it may still come out from behind what hides it
   }
+  previous_[search_.track].surface_pixels = 0;
   log(EventKind::kRecovered, track.id, frame_.input->t_s - track.last_good_t_s);
   track.phase = Track::Phase::kTracked;
   track.left_view = false;

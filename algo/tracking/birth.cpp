@@ -69,6 +69,13 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.owned_pixels = track.divided_run = track.cut_balance = track.double_run = track.lost_run = 0;
   track.good_poses = track.poor_run = track.integrated = track.still_run = track.published_gap = 0;
   track.last_good_t_s = t_s;
+  track.T_last_good = footprint.T_camera_object;
+  track.yaw_unwrapped = 0;
+  track.told_full = false;
+  track.aligned = {};
+  track.agreement = {};
+  track.verdict = Verdict::kLost;
+  track.yaw_source = YawSource::kNone;
   track.drive.reset();
   track.heading = {};
   track.heading_doubt = false;

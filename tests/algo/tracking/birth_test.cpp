@@ -10,6 +10,7 @@
 #include "algo/core/scalar_math.hpp"
 #include "algo/tracking/image_box.hpp"
 #include "tests/algo/tracking/flat_view.hpp"
+#include "tests/support/bound.hpp"
 
 using namespace st;
 using namespace st::test;
@@ -90,16 +91,7 @@ TEST(Birth, WhatIsCarriedDoesNotStandOnTheFloor) {
 
 TEST(Birth, TheVolumeLeavesRoomForWhatIsNotSeenYet) {
   const auto track = std::make_unique<Track>();
-  std::vector<std::uint8_t> memory;
-  Bump measure;
-  track->volume.bind(measure, 128);
-  memory.resize(measure.used() + Bump::kAlign);
-  void* start = memory.data();
-  std::size_t room = memory.size();
-  std::align(Bump::kAlign, measure.used(), start, room);
-  Bump bump(start, room);
-  track->volume.bind(bump, 128);
-
+  const test::BoundMemory memory([&](Bump& bump) { track->volume.bind(bump, 128); });
   for (const double side : {0.08, 0.35, 0.6}) {
     const Footprint f = find_footprint(box_points(1.6, 0, {side, side, 0.1}), kFloor);
     start_track(*track, f, kFloor, 12.5);
@@ -111,6 +103,29 @@ TEST(Birth, TheVolumeLeavesRoomForWhatIsNotSeenYet) {
     DOUBLES_EQUAL(0, norm(to_double(track->volume.centre()) - f.bounds.centre()), 0.01);
     DOUBLES_EQUAL(0, norm(track->motion.pose().t - f.T_camera_object.t), 0);
   }
+}
+
+TEST(Birth, ATrackKnowsNothingOfWhoHadItsSlotBefore) {
+  const auto track = std::make_unique<Track>();
+  const test::BoundMemory memory([&](Bump& bump) { track->volume.bind(bump, 64); });
+  track->id = 7;
+  track->left_view = track->told_full = track->heading_doubt = true;
+  track->yaw_unwrapped = 700;
+  track->owned_pixels = track->divided_run = track->cut_balance = track->double_run = 99;
+  track->good_poses = track->poor_run = track->integrated = track->still_run = track->lost_run = 99;
+  track->T_last_good.t = {9, 9, 9};
+  track->yaw_source = YawSource::kColor;
+  track->verdict = Verdict::kGood;
+  const Footprint f = find_footprint(box_points(1.6, 0, {0.3, 0.3, 0.1}), kFloor);
+  start_track(*track, f, kFloor, 3);
+  LONGS_EQUAL(0, track->id);
+  CHECK_FALSE(track->left_view || track->told_full || track->heading_doubt || track->cut());
+  DOUBLES_EQUAL(0, track->yaw_unwrapped, 0);
+  LONGS_EQUAL(0, track->owned_pixels + track->divided_run + track->double_run + track->good_poses +
+                     track->poor_run + track->integrated + track->still_run + track->lost_run);
+  DOUBLES_EQUAL(0, norm(track->T_last_good.t - f.T_camera_object.t), 0);
+  CHECK(track->yaw_source == YawSource::kNone);
+  CHECK(track->verdict == Verdict::kLost);
 }
 
 TEST_GROUP(ImageBox){};
