@@ -93,11 +93,18 @@ TEST(BadInput, WordsOfTheCommandLine) {
   check_refused(replay(folder / "good", {"--tracker", "magic"}), "magic");
   check_refused(replay(folder / "good", {"--volume", "100"}), "volume");
   check_refused({"run", "--source", "sim:moon", "--out", folder / "run"}, "moon");
+  check_refused({"run", "--source", folder / "good", "--robot", "sim", "--path",
+                 STARTRACK_SOURCE_DIR "/examples/paths/circle-0.5.toml", "--out", folder / "run"},
+                "needs a camera that sees it now");
+  const std::string truth = file("truth.tum", "1 0 0 0 0 0 0 1\n");
+  check_refused({"evaluate", folder / "good", "--truth", truth}, "good: is no run");
+  check_refused({"evaluate", file("notes.txt", "mine\n"), "--truth", truth},
+                "notes.txt: is no TUM trajectory");
 }
 
 TEST(BadInput, ARobotThatIsNotThereIsADevicesFault) {
   const Said said =
-      startrack({"run", "--source", folder / "good", "--robot", "/dev/nowhere", "--path",
+      startrack({"run", "--source", "sim:lab", "--robot", "/dev/nowhere", "--path",
                  STARTRACK_SOURCE_DIR "/examples/paths/circle-0.5.toml", "--out", folder / "run"});
   LONGS_EQUAL_TEXT(3, said.code, said.err.c_str());
   STRCMP_CONTAINS("/dev/nowhere", said.err.c_str());
