@@ -118,6 +118,7 @@ Step solve(const NormalEquations& eq) {
 
 AlignResult align(const AlignInput& in, AlignScratch& scratch) {
   AlignResult result;
+  result.T_camera_object = in.start;
   Pose T = in.start;
   double shift_px[2] = {0, 0};
   const ContourTermOptions contour_options;
@@ -168,7 +169,6 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
       all.mirror();
       const Step step = solve(all);
       if (!step.solved) return result;
-      result.solved = true;
       ++result.iterations;
       T = moved_about(T, {{step.x[0], step.x[1], step.x[2]}, {step.x[3], step.x[4], step.x[5]}}, in.pivot);
       shift_px[0] += step.x[6];

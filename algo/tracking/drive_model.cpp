@@ -13,6 +13,7 @@ constexpr int kMostMisfits = 12;   // half a metre of driving another way
 constexpr double kMisfit_rad = 0.2;
 constexpr double kLateralNoise_m = 0.003, kOffset_m = 0.05;  // of a window; of the turning centre, a priori
 constexpr double kLeastTravel_m = 0.25, kMostLateral = 0.09;
+constexpr double kLongestGap_s = 0.2;  // what came of it beyond that, nobody saw: a hand may have carried it
 constexpr double kLongest_s = 1.0, kLeastWay_m = 0.10, kMostTurn_rad = 0.4;
 constexpr double kChord_m = 0.05, kMostBend_rad = 0.3, kChordSigma_rad = 0.1;
 constexpr double kPosition_m = 0.002, kLeastSigma_rad = 0.02;
@@ -38,13 +39,14 @@ double DriveModel::heading_error(const Motion& motion, const Axis& axis) {
   return arc_tan2(across, along);
 }
 
-void DriveModel::learn(const Motion& window) {
+void DriveModel::learn(const Motion& window, bool doubt) {
   if (recognised() && window.length_m() > 0.5 * kWindow_m) {
     const bool misfit = std::fabs(heading_error(window, axis())) > kMisfit_rad;
     misfits_ = misfit ? misfits_ + 1 : 0;
     if (misfits_ > kMostMisfits) reset();
     if (misfit) return;
   }
+  if (doubt) return;
   if (recognised()) backward_ = axis().cos * window.x_m + axis().sin * window.y_m < 0;
   const double a[3] = {window.x_m, window.y_m, window.turn_rad};
   for (int r = 0; r < 3; ++r)
@@ -58,13 +60,17 @@ void DriveModel::turn_recent(double by_rad) {
 }
 
 void DriveModel::add(double t_s, const Pose2& pose, bool doubt) {
+  if (!recent_.empty() && t_s - recent_[recent_.size() - 1].t_s > kLongestGap_s) {
+    recent_.clear();
+    window_ = {};
+  }
   if (!recent_.empty()) window_.add_step(recent_[recent_.size() - 1].pose, pose);
   if (recent_.full()) recent_.erase(0);
   recent_.push_back({t_s, pose});
   if (window_.length_m() < kWindow_m && std::fabs(window_.turn_rad) < kWindowTurn_rad) return;
   const Motion window = window_;
   window_ = {};
-  if (!doubt) learn(window);
+  learn(window, doubt);
 }
 
 // The lateral motion -sin(phi) ax + cos(phi) ay + c s vanishes: c from the turns, what is left of (ax, ay) is

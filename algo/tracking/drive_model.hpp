@@ -20,8 +20,9 @@ class DriveModel {
  public:
   void reset() { *this = DriveModel{}; }
 
-  // A good pose: the object's origin and yaw on the floor. In order of time, whether recognised or not;
-  // nothing is learned from a heading that is in doubt.
+  // A good pose: the object's origin and yaw on the floor. In order of time, whether recognised or not.
+  // From a heading that is in doubt nothing is learned but that it fits the axis or does not: a picture that
+  // contradicts the axis for half a metre is right in the end.
   void add(double t_s, const Pose2& pose, bool doubt);
 
   // The headings lately added were wrong by so much.
@@ -49,7 +50,7 @@ class DriveModel {
     void add_step(const Pose2& from, const Pose2& to);
     double length_m() const;
   };
-  void learn(const Motion& window);
+  void learn(const Motion& window, bool doubt);
   Axis axis() const;
   ExpectedHeading expect_by_headings(double t_s, const Pose2& predicted, const Axis& drive) const;
   ExpectedHeading expect_by_places(double t_s, const Pose2& predicted, const Axis& drive) const;

@@ -69,8 +69,13 @@ void MotionFilter::predict(double t_s, const MotionNoise& noise) {
     a.pp += 2 * dt * a.pr + dt * dt * a.rr + 0.25 * dt * dt * dt * dt * q;
     a.pr += dt * a.rr + 0.5 * dt * dt * dt * q;
     a.rr += dt * dt * q;
+    // No object is faster than that; its covariance with the value must not say more than the variance does,
+    // or a long gap would leave negative ones.
     const double most = i < 3 ? 4.0 : 25.0;  // (2 m/s)^2, (5 rad/s)^2
-    if (a.rr > most) a.rr = most;
+    if (!(a.rr > most)) continue;
+    constexpr double kMostCorrelation = 0.9;
+    a.rr = most;
+    a.pr = std::min(a.pr, kMostCorrelation * std::sqrt(a.pp * a.rr));
   }
 }
 

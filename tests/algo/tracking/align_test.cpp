@@ -126,6 +126,21 @@ TEST(Align, AHeadingFromTheMotionTurnsWhatThePictureLeavesOpen) {
   DOUBLES_EQUAL(0.15, dot(rotation_to_vector(turned), in.floor.up_camera), 0.005);
 }
 
+TEST(Align, WhatNothingHoldsIsNotSolvedAndStaysWhereItWasLookedFor) {
+  AlignInput in;
+  const FlatView flat({60, 40, 100, 80}, {0, 0, -1}, -1.0f);
+  const std::vector<float> depth(160 * 120, 1.0f);
+  in.view = flat.view;
+  in.depth_z = {depth.data(), 160, 120};
+  in.camera = kSmallCamera;
+  in.start = {rotation_from_vector({0.1, 0.2, 0.3}), {0.3, 0.2, 1.1}};
+  in.terms = {false, false, false, false};
+  const AlignResult result = align(in, work.scratch);
+  CHECK_FALSE(result.solved);
+  DOUBLES_EQUAL(0, norm(result.T_camera_object.t - in.start.t), 0);
+  DOUBLES_EQUAL(0, rotation_angle(result.T_camera_object.R.transposed() * in.start.R), 1e-7);
+}
+
 TEST(Align, TheOutlineAloneHoldsAFlatThingSideways) {
   const PaintedView model(thing, kAt, {90, 50, 250, 190});
   const Pose truth = moved_about(kAt, {{0.014, -0.009, 0}, {}}, kAt.t);

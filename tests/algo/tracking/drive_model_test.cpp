@@ -38,6 +38,11 @@ class Drive {
     return wrap_angle(expected.yaw_rad - pose().yaw);
   }
 
+  // Somebody carries it elsewhere while nobody sees it.
+  void carry(double seconds, double x_m, double y_m, double turn_rad) {
+    t_ += seconds, x_ += x_m, y_ += y_m, heading_ += turn_rad;
+  }
+
   DriveModel model;
 
  private:
@@ -95,6 +100,28 @@ TEST(DriveModel, NothingIsLearnedFromDoubtAndATurnOfThePastIsNoMotion) {
   robot.model.turn_recent(-0.5);
   robot.go(1, 0.2, 0);
   DOUBLES_EQUAL(0, robot.expected_error(), 0.03);
+}
+
+TEST(DriveModel, WhereItWasCarriedUnseenIsNoDriving) {
+  Drive robot;
+  robot.go(3, 0.2, 0.2);
+  robot.carry(0.5, 0.1, 0.1, 0);
+  robot.go(0.1, 0.2, 0);
+  CHECK_FALSE(robot.model.expect(13.7, robot.pose()).known);  // where it came from now, is not known yet
+  robot.go(1, 0.2, 0);
+  DOUBLES_EQUAL(0, robot.expected_error(), 0.03);
+  for (int i = 0; i < 20; ++i) {  // and it is nothing that it does by itself
+    robot.carry(0.5, -0.04, 0.07, 0.4);
+    robot.go(0.1, 0.2, 0);
+  }
+  CHECK(robot.model.recognised());
+}
+
+TEST(DriveModel, ADoubtThatTheDrivingConfirmsForHalfAMetreEnds) {
+  Drive robot;
+  robot.go(4, 0.2, 0.2);
+  robot.go(4, 0.2, 0.1, 0.6, true);
+  CHECK_FALSE(robot.model.recognised());
 }
 
 TEST(DriveModel, WhoDrivesAnotherWayForLongIsLearnedAnew) {

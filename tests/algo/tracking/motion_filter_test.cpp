@@ -2,6 +2,8 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include <cmath>
+
 #include "algo/core/scalar_math.hpp"
 
 using namespace st;
@@ -150,6 +152,22 @@ TEST(MotionFilter, ACorrectedMistakeIsNoMotion) {
   DOUBLES_EQUAL(0, norm(filter.angular_velocity_rps() - rates),
                 0.35);  // the axis of its turn was turned, too
   DOUBLES_EQUAL(0, norm(filter.output().angular_velocity_rps - out), 0.35);
+}
+
+TEST(MotionFilter, AGapOfAnyLengthLeavesItsUncertaintySound) {
+  const Covariance usual{1e-3, 3e-3};
+  for (const double gap_s : {0.5, 2.0, 10.0, 600.0}) {
+    MotionFilter filter = after(12, usual);
+    double t_s = 12 * kPeriod_s + gap_s;
+    for (int k = 0; k < 30; ++k, t_s += kPeriod_s) {
+      filter.predict(t_s, {});
+      const MotionPrior prior = filter.prior();
+      for (int i = 0; i < 6; ++i) CHECK(prior.information[7 * i] > 0 && std::isfinite(prior.information[7 * i]));
+      CHECK(filter.position_sigma_m() > 0);
+      filter.correct(truth(0), usual.m);
+    }
+    DOUBLES_EQUAL(0, norm(filter.velocity_mps()), 0.05);
+  }
 }
 
 TEST(MotionFilter, CoastingFadesAndRestStops) {
