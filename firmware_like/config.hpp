@@ -13,7 +13,6 @@ struct LoopConfig {
   int keyframe_every =
       0;  // frame-to-frame: 0 never, else a keyframe is kept for so many frames (calibration stage)
   int volume_side = 128;  // voxels a side of each object's volume
-  int init_frames = 2;    // frames that make the first model before tracking counts as begun: 1 or 2
   bool use_contour = true, use_color = true, use_floor = true, use_motion = true;
   double seconds = 0;  // stop after so much recorded (or live) time; 0: at the end
 };

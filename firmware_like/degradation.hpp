@@ -12,15 +12,16 @@ struct LadderStep {
   bool color_term;   // the colour term takes part in the pose
   int point_stride;  // every n-th pixel of the object enters the pose
   bool integrate;    // the frame enters the model
+  int search_tries;  // poses that are tried for a lost object in a frame
 };
 
 // 0 is full work. Colour goes first: depth, floor and odometry still hold the pose. The model comes last:
 // without integration the pose is as good as before for as long as the same surface is seen.
 inline constexpr LadderStep kLadder[] = {
-    {0, "full work", true, 1, true},
-    {1, "no colour term", false, 1, true},
-    {2, "every second point", false, 2, true},
-    {3, "no integration", false, 2, false},
+    {0, "full work", true, 1, true, 9},
+    {1, "no colour term", false, 1, true, 6},
+    {2, "every second point", false, 2, true, 3},
+    {3, "no integration", false, 2, false, 3},
 };
 inline constexpr int kLevels = static_cast<int>(sizeof kLadder / sizeof kLadder[0]);
 

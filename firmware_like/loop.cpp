@@ -36,7 +36,7 @@ LoopEnd Loop::run() {
     stages_.done(Stage::kJudge);
     tracker.integrate_all(ladder_step(level_));
     stages_.done(Stage::kIntegrate);
-    tracker.decide_lives();
+    tracker.decide_lives(ladder_step(level_));
     stages_.done(Stage::kDecide);
     drive();
     stages_.done(Stage::kSend);

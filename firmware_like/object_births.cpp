@@ -47,7 +47,7 @@ void ObjectTracker::drop_fragments(const Rect& box) {
   for (Track& track : tracks_) {
     if (!track.active() || track.good_poses >= kYoung || track.from_background) continue;
     const auto model_z = [&](int u, int v) { return track.view.z(u, v); };
-    if (3 * count_same_surface(model_z, rest_z_, box, 0.04f) >= track.view_pixels) evict(track);
+    if (3 * count_same_surface(model_z, rest_z_, box, 0.04f) > track.view_pixels) evict(track);
   }
 }
 
@@ -89,19 +89,23 @@ void ObjectTracker::begin_released() {
   }
 }
 
-void ObjectTracker::begin_from_pixels(const Unexplained& what) {
+// False: it has to wait for a slot, or is not worth one.
+bool ObjectTracker::begin_from_pixels(const Unexplained& what) {
+  // Ragged things are hardly more than edges: nobody makes room for them.
+  const int solid =
+      count_solid(frame_.depth_z, frame_.owners, kForeign, segmentation_->labels, what.label, what.box);
+  if (solid < kLeastPoints) return false;
   const std::size_t k = make_room(what.touches_border ? Newness::kCut : Newness::kWhole);
-  if (k == kMaxObjects) return;
+  if (k == kMaxObjects) return false;
   Track& track = tracks_[k];
   claim_pixels(what, k);
+  track.motion = MotionFilter{};  // how it moves is not known
   observe(track, k, what.box, true);
-  if (track.points_used < kLeastPoints) {
-    track.phase = Track::Phase::kFree;
-    return;
-  }
+  if (track.points_used < kLeastPoints) return false;
   start_track(track, find_footprint(points_of(k).first(track.points_used), support_), support_,
               frame_.input->device_t_s);
-  if (config_.init_frames >= 1) fuse(track, k);
+  fuse(track, k);
+  return true;
 }
 
 ObjectTracker::Newcomer* ObjectTracker::newcomer_at(const Rect& box) {
@@ -152,16 +156,14 @@ void ObjectTracker::begin_tracks() {
     const double px_m = what.centroid.z / frame_.camera.fx;
     if (what.pixels < kLeastNewcomer_px || what.pixels * px_m * px_m < kLeastNewcomer_m2) continue;
     Newcomer* known = newcomer_at(what.box);
-    if (known == nullptr) {
+    if (known == nullptr || known->seen) {  // of two in one place each has to stand its time
       newcomers_.push_back({what.box, 1, 0, true});
       continue;
     }
     known->box = what.box;
     known->seen = true;
-    if (!is_looked_for_in(what) && !is_barren(what) && ++known->frames >= kNewcomerFrames) {
-      begin_from_pixels(what);
-      known->seen = false;
-    }
+    if (is_looked_for_in(what) || is_barren(what) || ++known->frames < kNewcomerFrames) continue;
+    if (begin_from_pixels(what)) known->seen = false;
   }
   for (std::size_t i = 0; i < newcomers_.size();) {
     if (newcomers_[i].seen)

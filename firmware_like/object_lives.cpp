@@ -36,7 +36,7 @@ void ObjectTracker::confirm(Track& track) {
 void ObjectTracker::lose(Track& track) {
   if (track.phase == Track::Phase::kCandidate) {
     mark_barren(track);
-    track.phase = Track::Phase::kFree;
+    free_slot(track);
     return;
   }
   const Rect box = image_box(track.bounds, track.motion.pose(), frame_.camera, 0);
@@ -46,36 +46,55 @@ void ObjectTracker::lose(Track& track) {
       frame_.input->t_s - track.last_good_t_s);
 }
 
-std::size_t ObjectTracker::make_room(Newness newness) {
-  const std::size_t k = slot_for(tracks_, newness);
-  if (k == kMaxObjects) return k;
-  if (tracks_[k].phase != Track::Phase::kFree) evict(tracks_[k]);
-  previous_[k].surface_pixels = 0;  // the frame before showed another object
-  return k;
+// Whoever searched for the track, or in it, gives up.
+void ObjectTracker::free_slot(Track& track) {
+  const auto k = static_cast<std::size_t>(&track - tracks_);
+  track.phase = Track::Phase::kFree;
+  previous_[k].surface_pixels = 0;
+  if (search_.track == k || (search_.where == Search::Where::kRival && search_.rival == k))
+    search_.running = false;
 }
 
 void ObjectTracker::evict(Track& track) {
-  if (track.id > 0) log(EventKind::kEvicted, track.id);
-  if (search_.running && &tracks_[search_.track] == &track) search_.running = false;
-  if (track.active()) mark_barren(track);
-  track.phase = Track::Phase::kFree;
+  if (track.id > 0) {
+    log(EventKind::kEvicted, track.id);
+    if (ObjectCount* count = count_of(track.id)) count->good_at_end = false;
+  }
+  free_slot(track);
+}
+
+// Something unexplained takes a slot, if need be from what is worth less; kMaxObjects: it has to wait.
+std::size_t ObjectTracker::make_room(Newness newness) {
+  const std::size_t k = slot_for(tracks_, newness);
+  if (k < kMaxObjects && tracks_[k].phase != Track::Phase::kFree) evict(tracks_[k]);
+  return k;
 }
 
 // Two tracks of one thing: begun from its two ends, say. When the smaller model lies in the larger one for a
-// while, it gives way; two things cannot be in one place.
+// while, it gives way, or the one of them that is not confirmed; two things cannot be in one place.
 void ObjectTracker::drop_doubles() {
   constexpr int kPatience = 10;  // frames
   constexpr float kSamePlace_m = 0.02f;
-  for (Track& small : tracks_) {
-    bool inside = false;
-    for (const Track& large : tracks_) {
+  const auto coincide = [](const Track& small, const Track& large) {
+    const auto a = [&](int u, int v) { return small.view.z(u, v); };
+    const auto b = [&](int u, int v) { return large.view.z(u, v); };
+    return 2 * count_same_surface(a, b, small.view.maps.roi, kSamePlace_m) > small.view_pixels;
+  };
+  bool doubled[kMaxObjects]{};
+  for (std::size_t i = 0; i < kMaxObjects; ++i) {
+    for (std::size_t j = 0; j < kMaxObjects; ++j) {
+      const Track &small = tracks_[i], &large = tracks_[j];
       if (!small.active() || !large.active() || small.view_pixels >= large.view_pixels) continue;
-      const auto a = [&](int u, int v) { return small.view.z(u, v); };
-      const auto b = [&](int u, int v) { return large.view.z(u, v); };
-      inside = inside || 2 * count_same_surface(a, b, small.view.maps.roi, kSamePlace_m) > small.view_pixels;
+      const bool larger_is_nobody = small.phase != large.phase && large.phase == Track::Phase::kCandidate;
+      bool& gives_way = doubled[larger_is_nobody ? j : i];
+      gives_way = gives_way || coincide(small, large);
     }
-    small.double_run = inside ? small.double_run + 1 : 0;
-    if (small.double_run > kPatience) evict(small);
+  }
+  for (std::size_t i = 0; i < kMaxObjects; ++i) {
+    tracks_[i].double_run = doubled[i] ? tracks_[i].double_run + 1 : 0;
+    if (tracks_[i].double_run <= kPatience) continue;
+    if (tracks_[i].phase == Track::Phase::kCandidate) mark_barren(tracks_[i]);
+    evict(tracks_[i]);
   }
 }
 
@@ -126,20 +145,19 @@ void ObjectTracker::confirm_proven() {
 }
 
 // Last of all it is decided who is confirmed: what has to make room in this frame never gets a number.
-void ObjectTracker::decide_lives() {
+void ObjectTracker::decide_lives(const LadderStep& step) {
   for (Track& track : tracks_) {
     track.lost_run = track.phase == Track::Phase::kLost ? track.lost_run + 1 : 0;
     if (!track.active()) continue;
     const bool candidate = track.phase == Track::Phase::kCandidate;
     const double speed = norm(track.motion.velocity_mps()) + 0.15 * norm(track.motion.angular_velocity_rps());
     track.still_run = speed < 0.03 ? track.still_run + 1 : 0;
-    if (candidate && !track.has_moved && track.good_poses > kStillCandidate)
-      track.phase = Track::Phase::kFree;
-    if (track.poor_run > (candidate ? kCandidatePatience : kTrackedPatience)) lose(track);
+    const bool stands = candidate && !track.has_moved && track.good_poses > kStillCandidate;
+    if (stands || track.poor_run > (candidate ? kCandidatePatience : kTrackedPatience)) lose(track);
   }
   drop_doubles();
   begin_released();
-  search_step();
+  search_step(step.search_tries);
   begin_tracks();
   confirm_proven();
   freeze_background();

@@ -64,14 +64,20 @@ ObjectSample ObjectTracker::sample_of(Track& track) const {
   return s;
 }
 
+ObjectCount* ObjectTracker::count_of(int id) {
+  const auto at = static_cast<std::size_t>(id - 1);
+  return at < counts_.size() ? &counts_[at] : nullptr;
+}
+
 void ObjectTracker::publish(FrameReport& report) {
   report.objects.clear();
   for (Track& track : tracks_) {
     if (track.id == 0 || track.phase == Track::Phase::kFree) continue;
     const ObjectSample sample = sample_of(track);
     report.objects.push_back(sample);
-    if (static_cast<std::size_t>(track.id) > counts_.size()) continue;  // more objects than the list holds
-    ObjectCount& count = counts_[static_cast<std::size_t>(track.id - 1)];
+    ObjectCount* const counted = count_of(track.id);
+    if (counted == nullptr) continue;
+    ObjectCount& count = *counted;
     if (sample.in_tum) count.last_t_s = report.t_s, ++count.tracked;
     if (!sample.in_tum && sample.in_view) ++count.lost;
     if (track.active() && track.aligned.iterations > 0) {

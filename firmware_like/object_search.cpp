@@ -8,7 +8,6 @@
 namespace st {
 namespace {
 
-constexpr int kYawsPerFrame = 9;
 constexpr double kHeldTurn_rad = 0.002;
 constexpr int kSearchPatience = 5;
 constexpr int kInPlaceFrames = 90;  // for so long a lost object is expected where it was
@@ -28,11 +27,8 @@ std::uint8_t ObjectTracker::searched_owner() const {
 double ObjectTracker::try_pose(Track& track, const Pose& T_camera_object, bool turn) {
   render_one(track, T_camera_object);
   if (track.view_pixels < kLeastPoints) return 0;
-  const auto owner =
-      static_cast<std::uint8_t>((search_.where == Search::Where::kRival ? search_.rival : search_.track) + 1);
-  track.points_used = gather_near_view(frame_.depth_z, frame_.owners, owner, track.view, frame_.camera,
-                                       frame_.has_color ? registered_color_ : ImageView<std::uint32_t>{},
-                                       points_of(search_.track));
+  track.points_used = gather_near_view(frame_.depth_z, frame_.owners, searched_owner(), track.view,
+                                       frame_.camera, colors_of(track), points_of(search_.track));
   if (track.points_used < kLeastPoints) return 0;
   AlignInput in = alignment_of(track, search_.track);
   in.start = T_camera_object;
@@ -88,7 +84,7 @@ void ObjectTracker::finish_search(const Pose& T_camera_anchor) {
     if (search_.where == Search::Where::kSegment) refuse(search_.box, search_.track);
     return;  // else it may still come out from behind what hides it
   }
-  previous_[search_.track].surface_pixels = 0;
+  previous_[search_.track].surface_pixels = 0;  // the frame before has long been another
   log(EventKind::kRecovered, track.id, frame_.input->t_s - track.last_good_t_s);
   track.phase = Track::Phase::kTracked;
   track.left_view = false;
@@ -182,6 +178,7 @@ std::size_t ObjectTracker::claim_searched() {
   if (search_.where == Search::Where::kRival) {
     const Track& rival = tracks_[search_.rival];
     search_.running = rival.phase == Track::Phase::kCandidate;
+    track.colored = rival.colored;
     for (std::size_t i = 0; search_.running && i < rival.points_used; ++i)
       points_of(k)[i] = points_of(search_.rival)[i];
     return search_.running ? rival.points_used : 0;
@@ -216,7 +213,7 @@ Pose ObjectTracker::search_anchor(const Footprint& footprint) const {
   }
 }
 
-void ObjectTracker::search_step() {
+void ObjectTracker::search_step(int tries) {
   if (!search_.running) start_search();
   if (!search_.running) return;
   const std::size_t used = claim_searched();
@@ -228,7 +225,8 @@ void ObjectTracker::search_step() {
     Search::Found& tried = search_.best[search_.refined++];
     refine(tried, anchor);
     // One that the colours confirm needs no comparison; shape alone may fit two ways.
-    const bool confirmed = tried.score > 0 && track.habit.knows_color() && track.aligned.color.used > 0;
+    const bool confirmed =
+        tried.score > 0 && track.habit.knows_color() && track.aligned.color.used > kLeastColored;
     for (int i = search_.refined; confirmed && i < Search::kKept; ++i) search_.best[i].score = 0;
     if (confirmed || search_.refined == Search::kKept) finish_search(anchor);
     return;
@@ -237,7 +235,7 @@ void ObjectTracker::search_step() {
   const Rect box = search_.where == Search::Where::kRival ? owned_[search_.rival].box : search_.box;
   const HiddenSide hidden =
       hidden_side(frame_.depth_z, frame_.owners, searched_owner(), box, segmentation_->view);
-  for (int i = 0; i < kYawsPerFrame && search_.next_yaw < kSearchYaws; ++i, ++search_.next_yaw) {
+  for (int i = 0; i < tries && search_.next_yaw < kSearchYaws; ++i, ++search_.next_yaw) {
     const double yaw = 2.0 * kPi * search_.next_yaw / kSearchYaws;
     const Pose start = in_place ? turned_in_place(track, support_, yaw)
                                 : hypothesis(track, footprint, support_, yaw, hidden);

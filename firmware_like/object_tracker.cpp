@@ -1,5 +1,6 @@
 #include "firmware_like/object_tracker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -10,9 +11,18 @@ namespace st {
 namespace {
 
 constexpr int kViewMargin_px = 14;
-constexpr int kFramesPerSide = 20, kFirstFrames = 10;
-constexpr float kContradicted =
-    0.1f;  // share of the model that the frame sees through: it has to be carved away
+constexpr int kFramesPerSide = 20, kFirstFrames = 10, kHardlySmeared = 30;
+// Share of the model that the frame sees through: it has to be carved away.
+constexpr float kContradicted = 0.1f;
+constexpr int kMostBalance = 90;  // frames: a long time whole must not outweigh being cut for ever
+
+// On its way, or on the spot where its turn is seen: one that is not seen wanders.
+bool moved_since_birth(const Track& track) {
+  constexpr double kWay_m = 0.008, kTurn_rad = 0.15;
+  const Pose &now = track.T_camera_object, &then = track.T_birth;
+  if (norm(now.t - then.t) > kWay_m) return true;
+  return track.yaw_source != YawSource::kNone && rotation_angle(now.R * then.R.transposed()) > kTurn_rad;
+}
 
 }  // namespace
 
@@ -142,7 +152,8 @@ void ObjectTracker::associate_pixels() {
     if (!tracks_[k].active() || owned_[k].pixels == 0) continue;
     tracks_[k].owned_pixels = owned_[k].pixels;
     tracks_[k].divided_run = owned_[k].divided ? tracks_[k].divided_run + 1 : 0;
-    tracks_[k].cut_balance += is_cut(owned_[k].box, segmentation_->view) ? 1 : -1;
+    const int balance = tracks_[k].cut_balance + (is_cut(owned_[k].box, segmentation_->view) ? 1 : -1);
+    tracks_[k].cut_balance = std::clamp(balance, -kMostBalance, kMostBalance);
   }
 }
 
@@ -158,8 +169,7 @@ AlignInput ObjectTracker::alignment_of(const Track& track, std::size_t k) const 
   in.floor.on = track.planar && support_.found && config_.use_floor;
   in.floor.up_camera = support_.up;
   in.floor.d = support_.d;
-  in.terms = {config_.use_contour, config_.use_color && frame_.has_color, config_.use_floor,
-              config_.use_motion};
+  in.terms = {config_.use_contour, config_.use_color && track.colored, config_.use_floor, config_.use_motion};
   const double sigma = 2.0 * track.motion.position_sigma_m();
   in.largest_start_error_m = sigma < 0.02 ? 0.02 : sigma > 0.08 ? 0.08 : sigma;
   return in;
@@ -170,7 +180,6 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
   track.aligned = AlignResult{};
   if (track.points_used < kLeastPoints || track.view_pixels < kLeastPoints) return;
   AlignInput in = alignment_of(track, k);
-  in.terms.color = in.terms.color && step.color_term;
   in.point_stride = step.point_stride;
   // The paper's alignment knows no floor, and needs nothing to leave it.
   if (config_.tracker == TrackerKind::kListing1) {
@@ -186,13 +195,18 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
 // Collects the track's pixels and gives them their colours, as they were when the depth was taken.
 void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box, bool with_color) {
   const std::uint8_t owner = static_cast<std::uint8_t>(k + 1);
-  if (frame_.has_color && with_color)
+  track.colored = frame_.has_color && with_color;
+  if (track.colored)
     register_color(registration_, frame_.color, to_float(track.motion.smooth_motion_over(frame_.color_lag_s)),
                    frame_.depth_z, frame_.owners, owner, box, frame_.camera, registered_color_);
   mark_edges(frame_.depth_z, owner, box, frame_.owners);
-  track.points_used = gather_points(
-      frame_.depth_z, frame_.owners, owner, box, frame_.camera,
-      frame_.has_color && with_color ? registered_color_ : ImageView<std::uint32_t>{}, points_of(k));
+  track.points_used =
+      gather_points(frame_.depth_z, frame_.owners, owner, box, frame_.camera, colors_of(track), points_of(k));
+}
+
+// The registered image holds colours of this frame only where they were taken over; elsewhere old ones.
+ImageView<std::uint32_t> ObjectTracker::colors_of(const Track& track) const {
+  return track.colored ? registered_color_ : ImageView<std::uint32_t>{};
 }
 
 // A hand that takes hold of an object hangs together with it. Meanwhile neither pixels beside the model, as
@@ -225,7 +239,7 @@ void ObjectTracker::fuse(Track& track, std::size_t k) {
   evidence.depth_m = frame_.depth_z;
   evidence.owners = frame_.owners;
   evidence.object = static_cast<std::uint8_t>(k + 1);
-  if (frame_.has_color) evidence.color = registered_color_;
+  evidence.color = colors_of(track);
   note_integrated(track, integrate(track.volume, evidence, track.T_camera_object, IntegrateOptions{},
                                    integrate_scratch_));
 }
@@ -288,8 +302,8 @@ void ObjectTracker::judge_one(Track& track) {
   track.T_last_good = track.T_camera_object;
   if (track.planar && support_.found)
     track.drive.add(frame_.input->device_t_s, support_.on_floor(track.T_camera_object), track.heading_doubt);
-  if (norm(track.T_camera_object.t - track.birth_position) > 0.008) track.has_moved = true;
   track.yaw_source = yaw_source_of(track.aligned, support_.up);
+  track.has_moved = track.has_moved || moved_since_birth(track);
 }
 
 void ObjectTracker::judge_all() {
@@ -303,21 +317,25 @@ void ObjectTracker::integrate_all(const LadderStep& step) {
     if (!track.active() || track.state != TrackState::kGood || !step.integrate) continue;
     // While the turn is unseen, a new view would smear over the model for ever. The first frames have nothing
     // to smear.
-    if ((track.yaw_source == YawSource::kNone || track.heading_doubt) && track.integrated > 30) continue;
+    const bool unsure = track.yaw_source == YawSource::kNone || track.heading_doubt;
     std::uint8_t& fused = track.sides.side_of(track.T_camera_object);
     const bool contradicted = track.agreement.through > kContradicted;
-    if (fused < kFramesPerSide || track.integrated < kFirstFrames || contradicted) {
+    const bool wanted = fused < kFramesPerSide || track.integrated < kFirstFrames || contradicted;
+    if (wanted && !(unsure && track.integrated > kHardlySmeared)) {
       if (owned_[k].divided) keep_shape(track, k);
       fuse(track, k);
       fused = static_cast<std::uint8_t>(fused + (fused < 255));
     }
-    if (config_.tracker == TrackerKind::kFrameToFrame && ++previous_[k].age > config_.keyframe_every) {
-      const Rect box = image_box(track.bounds, track.T_camera_object, frame_.camera, kViewMargin_px);
-      remember_frame(previous_[k], frame_.depth_z, frame_.owners, static_cast<std::uint8_t>(k + 1), box,
-                     frame_.camera, frame_.has_color ? registered_color_ : ImageView<std::uint32_t>{},
-                     track.T_camera_object);
-    }
+    if (config_.tracker == TrackerKind::kFrameToFrame) remember(track, k);
   }
+}
+
+// Frame-to-frame mode: what the coming frames are aligned with.
+void ObjectTracker::remember(const Track& track, std::size_t k) {
+  if (++previous_[k].age <= config_.keyframe_every) return;
+  const Rect box = image_box(track.bounds, track.T_camera_object, frame_.camera, kViewMargin_px);
+  remember_frame(previous_[k], frame_.depth_z, frame_.owners, static_cast<std::uint8_t>(k + 1), box,
+                 frame_.camera, colors_of(track), track.T_camera_object);
 }
 
 }  // namespace st

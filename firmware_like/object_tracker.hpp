@@ -51,7 +51,7 @@ class ObjectTracker {
   void align_all(const LadderStep& step);
   void judge_all();
   void integrate_all(const LadderStep& step);
-  void decide_lives();  // confirm, lose, find again, begin, evict
+  void decide_lives(const LadderStep& step);  // confirm, lose, find again, begin, evict
   void publish(FrameReport& report);
 
   // For the end of a run.
@@ -60,7 +60,6 @@ class ObjectTracker {
   bool has_floor_frame() const { return has_floor_frame_; }
   const Pose& T_floor_camera() const { return T_floor_camera_; }
   bool floor_found() const { return support_.found; }
-  int confirmed_count() const { return next_id_ - 1; }
 
  private:
   // One row of the memory plan: which member function takes that memory.
@@ -87,8 +86,10 @@ class ObjectTracker {
   std::span<ObservedPoint> points_of(std::size_t k);
   void render_one(Track& track, const Pose& T);
   void observe(Track& track, std::size_t k, const Rect& box, bool with_color);
+  ImageView<std::uint32_t> colors_of(const Track& track) const;
   void keep_shape(const Track& track, std::size_t k);
   void fuse(Track& track, std::size_t k);
+  void remember(const Track& track, std::size_t k);
   void note_integrated(Track& track, const IntegrateStats& stats);
   void fuse_at_rest(Track& track, const Rect& box);
 
@@ -96,7 +97,7 @@ class ObjectTracker {
   bool is_proven(const Track& candidate) const;
   void confirm_proven();
   void lose(Track& track);
-  void search_step();
+  void search_step(int tries);
   void start_search();
   bool start_search_in(const Unexplained& what, std::size_t k);
   bool start_search_in_candidate(std::size_t j, std::size_t k);
@@ -115,13 +116,15 @@ class ObjectTracker {
   bool is_looked_for_in(const Unexplained& what) const;
   void begin_tracks();
   std::size_t make_room(Newness newness);
+  void free_slot(Track& track);
   void evict(Track& track);
   void drop_doubles();
-  void begin_from_pixels(const Unexplained& what);
+  bool begin_from_pixels(const Unexplained& what);
   void claim_pixels(const Unexplained& what, std::size_t k);
   void claim_near(const Unexplained& what, std::size_t k, const Vec3& centre, double radius_m);
   void log(EventKind kind, int object, double a = 0, double b = 0);
   ObjectSample sample_of(Track& track) const;
+  ObjectCount* count_of(int id);  // null: more objects than the list holds
   void freeze_background();
 
   Part parts_[6];

@@ -140,6 +140,7 @@ void Segmenter::update_protos() {
   const std::uint32_t frame = frames_ready_++;
   if (!out_.floor.found && frame % kFloorRetry_frames == 0) {
     out_.floor = floor_finder_.find(tables_, background_.code8(), gravity_frames_ > 0, gravity_);
+    if (out_.floor.found) changed_pixels_ = kChangedPixels;  // things were cut without it
     return;
   }
   const int changed = background_.absorbed_pixels() + static_cast<int>(background_.revealed().size());

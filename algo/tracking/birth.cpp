@@ -63,7 +63,7 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.motion.start(footprint.T_camera_object, support.R_camera_floor.transposed(), t_s);
   track.T_camera_object = footprint.T_camera_object;
   track.state = TrackState::kPoor;
-  track.birth_position = footprint.T_camera_object.t;
+  track.T_birth = footprint.T_camera_object;
   track.has_moved = false;
   track.from_background = false;
   track.owned_pixels = track.divided_run = track.cut_balance = track.double_run = track.lost_run = 0;

@@ -102,7 +102,6 @@ Verdict judge(const AlignResult& result, const Agreement& a) {
 
 YawSource yaw_source_of(const AlignResult& result, const Vec3& up) {
   constexpr double kSeen_rad = 0.035;  // 2 degrees, one sigma
-  constexpr int kLeastColored = 50;
   const double all = turn_sigma_rad(result.data_information, up);
   if (all > kSeen_rad) return YawSource::kNone;
   const double shape = turn_sigma_rad(result.shape_information, up);

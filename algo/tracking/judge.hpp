@@ -48,6 +48,9 @@ class Habit {
 Verdict judge(const AlignResult& result, const Agreement& agreement);
 Verdict judge(const AlignResult& result, const Agreement& agreement, const Habit& habit);
 
+// Points with a colour from which the colours say something.
+inline constexpr int kLeastColored = 50;
+
 // What the turn about `up` (camera frame, unit) was read from; none when the data leave it open.
 YawSource yaw_source_of(const AlignResult& result, const Vec3& up);
 

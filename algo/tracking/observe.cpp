@@ -4,33 +4,53 @@
 
 namespace st {
 
+namespace {
+
+// The matching window is about nine pixels of a 640-pixel image wide, and pulls what is near over its edge by
+// half that.
+class EdgeProbe {
+ public:
+  explicit EdgeProbe(int width) {
+    const int reach = (4 * width + 320) / 640, diagonal = (3 * reach + 2) / 4;
+    const int steps[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+    for (int i = 0; i < 8; ++i)
+      for (int a = 0; a < 2; ++a) around_[i][a] = steps[i][a] * (i < 4 ? reach : diagonal);
+  }
+  bool is_edge(ImageView<const float> depth_z, int u, int v) const {
+    const float z = depth_z(u, v), step = edge_step_m(z);
+    for (const auto& a : around_) {
+      if (!depth_z.contains(u + a[0], v + a[1])) continue;
+      const float other = depth_z(u + a[0], v + a[1]);
+      if (other > 0 && std::fabs(other - z) >= step) return true;
+    }
+    return false;
+  }
+
+ private:
+  int around_[8][2];
+};
+
+}  // namespace
+
 void mark_edges(ImageView<const float> depth_z, std::uint8_t owner, const Rect& roi,
                 ImageView<std::uint8_t> owners) {
-  // The matching window is about nine pixels of a 640-pixel image wide, and pulls what is near over its edge
-  // by half that.
-  const int reach = (4 * depth_z.width + 320) / 640, diagonal = (3 * reach + 2) / 4;
-  const int neighbours[8][2] = {{-reach, 0},
-                                {reach, 0},
-                                {0, -reach},
-                                {0, reach},
-                                {-diagonal, -diagonal},
-                                {diagonal, -diagonal},
-                                {-diagonal, diagonal},
-                                {diagonal, diagonal}};
+  const EdgeProbe probe(depth_z.width);
   const Rect box = roi.clipped(depth_z.width, depth_z.height);
-  for (int v = box.v0; v < box.v1; ++v) {
-    for (int u = box.u0; u < box.u1; ++u) {
-      if (owners(u, v) != owner) continue;
-      const float z = depth_z(u, v), step = edge_step_m(z);
-      for (const auto& n : neighbours) {
-        if (!depth_z.contains(u + n[0], v + n[1])) continue;
-        const float other = depth_z(u + n[0], v + n[1]);
-        if (!(other > 0) || std::fabs(other - z) < step) continue;
-        owners(u, v) = kEdge;
-        break;
-      }
-    }
-  }
+  for (int v = box.v0; v < box.v1; ++v)
+    for (int u = box.u0; u < box.u1; ++u)
+      if (owners(u, v) == owner && probe.is_edge(depth_z, u, v)) owners(u, v) = kEdge;
+}
+
+int count_solid(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners, std::uint8_t owner,
+                ImageView<const std::uint8_t> labels, std::uint8_t label, const Rect& roi) {
+  const EdgeProbe probe(depth_z.width);
+  const Rect box = roi.clipped(depth_z.width, depth_z.height);
+  int solid = 0;
+  for (int v = box.v0; v < box.v1; ++v)
+    for (int u = box.u0; u < box.u1; ++u)
+      if (owners(u, v) == owner && labels(u, v) == label && depth_z(u, v) > 0)
+        solid += probe.is_edge(depth_z, u, v) ? 0 : 1;
+  return solid;
 }
 
 namespace {

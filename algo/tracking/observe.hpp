@@ -38,6 +38,10 @@ inline constexpr std::uint8_t kEdge = 254;
 void mark_edges(ImageView<const float> depth_z, std::uint8_t owner, const Rect& roi,
                 ImageView<std::uint8_t> owners);
 
+// Those of the owner's pixels, within a label of the segment image, that mark_edges() would leave.
+int count_solid(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners, std::uint8_t owner,
+                ImageView<const std::uint8_t> labels, std::uint8_t label, const Rect& roi);
+
 // Projects camera-frame points into the colour image. The object has moved between the two exposures:
 // `motion` takes a point from the depth frame's instant to the colour frame's (camera frame).
 class ColorRegistration {

@@ -94,7 +94,7 @@ Pose turned_in_place(const Track& track, const Support& support, double yaw_rad)
 double fit_score(const AlignResult& result, const Agreement& a) {
   if (!result.solved) return 0;
   const double color =
-      result.color.used > 30 ? 1.0 / (1.0 + result.color.sigma * result.color.sigma / 200.0) : 0.5;
+      result.color.used > kLeastColored ? 1.0 / (1.0 + result.color.sigma * result.color.sigma / 200.0) : 0.5;
   return a.same * a.explained * (0.5 + 0.5 * color);
 }
 

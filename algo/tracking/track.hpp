@@ -62,8 +62,7 @@ struct Track {
   bool from_background = false;
   int owned_pixels = 0;  // in the last frame in which it had any
   int divided_run = 0;   // frames in a row in which something hung together with it
-  int cut_balance =
-      0;  // frames in which the edge of the view may have cut it, less those in which it did not
+  int cut_balance = 0;   // frames in which the view's edge may have cut it, less those in which it did not
   Volume volume;
   Bounds bounds;
   MotionFilter motion;
@@ -74,7 +73,7 @@ struct Track {
   Pose T_last_good;
   TrackState state = TrackState::kLost;
 
-  Vec3 birth_position{};  // camera frame, of the object's origin
+  Pose T_birth;  // camera frame
   bool has_moved = false;
   int good_poses = 0;  // since birth
   int poor_run = 0;    // frames in a row without a good pose
@@ -97,6 +96,7 @@ struct Track {
   ModelView view;  // what this frame is aligned with: rendered, or in frame-to-frame mode the frame before
   int view_pixels = 0;  // with a surface
   std::size_t points_used = 0;
+  bool colored = false;  // the colours of its pixels were taken over in this frame
   AlignResult aligned;
   Agreement agreement;
   Verdict verdict = Verdict::kLost;

@@ -162,7 +162,8 @@ TEST(MotionFilter, AGapOfAnyLengthLeavesItsUncertaintySound) {
     for (int k = 0; k < 30; ++k, t_s += kPeriod_s) {
       filter.predict(t_s, {});
       const MotionPrior prior = filter.prior();
-      for (int i = 0; i < 6; ++i) CHECK(prior.information[7 * i] > 0 && std::isfinite(prior.information[7 * i]));
+      for (int i = 0; i < 6; ++i)
+        CHECK(prior.information[7 * i] > 0 && std::isfinite(prior.information[7 * i]));
       CHECK(filter.position_sigma_m() > 0);
       filter.correct(truth(0), usual.m);
     }
