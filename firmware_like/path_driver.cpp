@@ -18,7 +18,7 @@ void PathDriver::decide(double now_s, const Sight& sight) {
   if (first_s_ < 0) first_s_ = last_s_ = now_s;
   const double passed_s = now_s - last_s_ < kLongestStep_s ? now_s - last_s_ : kLongestStep_s;
   last_s_ = now_s;
-  reaction_ = supervisor_.judge(now_s, status_, sight, 0.5 * (speeds_.left_mps + speeds_.right_mps));
+  reaction_ = supervisor_.judge(now_s, status_, sight, speeds_);
   speeds_ = {};
   if (reaction_ != Reaction::kNone) {
     follower_.hold(passed_s);

@@ -9,9 +9,10 @@ constexpr double kAfterBump_s = 0.5;  // what was in the way is given time to go
 
 }  // namespace
 
-Reaction SafetySupervisor::judge(double now_s, const RobotStatus& status, const Sight& sight, double v_mps) {
+Reaction SafetySupervisor::judge(double now_s, const RobotStatus& status, const Sight& sight,
+                                 const WheelSpeeds& told) {
   if (ended_) return Reaction::kEnd;
-  const bool blind = blind_too_long(now_s, sight, v_mps);
+  const bool blind = blind_too_long(now_s, sight, told);
   last_s_ = now_s;
   RobotFault fault = status.fault;
   Reaction reaction = judge_robot(now_s, fault);
@@ -35,15 +36,15 @@ Reaction SafetySupervisor::judge_robot(double now_s, RobotFault fault) {
   return fault == RobotFault::kBump ? on_bump_ : Reaction::kNone;
 }
 
-// Only what is driven blindly counts: a robot that waits may be out of sight.
-bool SafetySupervisor::blind_too_long(double now_s, const Sight& sight, double v_mps) {
+// Only what is driven blindly counts, a turn on the spot included: a robot that waits may be out of sight.
+bool SafetySupervisor::blind_too_long(double now_s, const Sight& sight, const WheelSpeeds& told) {
   if (!sight.watched) return false;
   if (sight.sees) {
     seen_ = true;
     blind_s_ = blind_m_ = 0;
-  } else if (v_mps != 0 && last_s_ >= 0) {
+  } else if ((told.left_mps != 0 || told.right_mps != 0) && last_s_ >= 0) {
     blind_s_ += now_s - last_s_;
-    blind_m_ += (now_s - last_s_) * std::fabs(v_mps);
+    blind_m_ += (now_s - last_s_) * 0.5 * std::fabs(told.left_mps + told.right_mps);
   }
   return blind_s_ > (seen_ ? kBlindTime_s : kUnseenTime_s) ||
          blind_m_ > (seen_ ? kBlindDistance_m : kUnseenDistance_m);

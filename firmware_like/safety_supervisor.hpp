@@ -2,6 +2,7 @@
 // concern a program that is alive. Without I/O and clock.
 #pragma once
 
+#include "algo/control/path.hpp"
 #include "hal/create/safety_rules.hpp"
 
 namespace st {
@@ -17,16 +18,16 @@ class SafetySupervisor {
  public:
   explicit SafetySupervisor(Reaction on_bump) : on_bump_(on_bump) {}
 
-  // `v_mps`: what the body was last told to do, and goes on doing. kNone: drive. kHold: stand in this tick.
+  // `told`: what the wheels were last told to do, and go on doing. kNone: drive. kHold: stand in this tick.
   // kEnd: stand, and do not drive again.
-  Reaction judge(double now_s, const RobotStatus& status, const Sight& sight, double v_mps);
+  Reaction judge(double now_s, const RobotStatus& status, const Sight& sight, const WheelSpeeds& told);
 
   // Why it stands or holds.
   RobotFault fault() const { return fault_; }
 
  private:
   Reaction judge_robot(double now_s, RobotFault fault);
-  bool blind_too_long(double now_s, const Sight& sight, double v_mps);
+  bool blind_too_long(double now_s, const Sight& sight, const WheelSpeeds& told);
 
   Reaction on_bump_;
   bool ended_ = false, seen_ = false;

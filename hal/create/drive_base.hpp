@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "algo/core/records.hpp"
@@ -72,8 +73,7 @@ class DriveBase {
 // (kDeviceFault). Must be called before the arena is mapped: it forks.
 struct RobotOptions {
   std::string port;
-  RobotModel model = RobotModel::kCreate2;
-  bool model_given = false;  // otherwise found out
+  std::optional<RobotModel> model;  // as told; else found out
   // Measured wheels; 0: as the model has them.
   RobotGeometry wheels{0, 0, 0};
   std::string log_path;    // robot.log: every byte both ways; empty: none

@@ -69,6 +69,11 @@ int baud_of_code(int code);
 int code_of_baud(int baud);  // -1: none
 RobotGeometry default_geometry(RobotModel model);
 
+// Whether the opcode sets the wheels' speeds.
+constexpr bool drives(std::uint8_t opcode) {
+  return opcode == kDrive || opcode == kDriveDirect || opcode == kDrivePwm;
+}
+
 // One whole command.
 struct Command {
   static constexpr std::size_t kCapacity = 128;

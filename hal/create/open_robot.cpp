@@ -5,12 +5,11 @@ namespace st {
 
 std::unique_ptr<DriveBase> open_robot(const RobotOptions& options) {
   auto log = std::make_unique<RobotLogWriter>(options.log_path);
-  std::optional<RobotModel> told;
-  if (options.model_given) told = options.model;
   std::unique_ptr<SimChild> sim;
-  if (options.port == "sim") sim = std::make_unique<SimChild>(options.model, options.seed);
-  auto port = std::make_unique<RobotPort>(sim ? sim->port() : options.port, oi::default_baud(options.model));
-  const RobotIdentity identity = meet_robot(*port, told, *log);
+  if (options.port == "sim")
+    sim = std::make_unique<SimChild>(options.model.value_or(RobotModel::kCreate2), options.seed);
+  auto port = std::make_unique<RobotPort>(sim ? sim->port() : options.port);
+  const RobotIdentity identity = meet_robot(*port, options.model, *log);
   RobotGeometry wheels = oi::default_geometry(identity.model);
   if (options.wheels.wheel_base_m > 0) wheels.wheel_base_m = options.wheels.wheel_base_m;
   if (options.wheels.wheel_diameter_m > 0) wheels.wheel_diameter_m = options.wheels.wheel_diameter_m;

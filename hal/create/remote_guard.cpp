@@ -37,14 +37,11 @@ int listen_at(const std::string& address) {
 }  // namespace
 
 RemoteGuard::RemoteGuard(const RobotOptions& robot, const std::string& address)
-    : model_(robot.model), listener_(listen_at(address)), commands_(robot.model) {
+    : listener_(listen_at(address)) {
   try {
-    std::optional<RobotModel> told;
-    if (robot.model_given) told = robot.model;
     RobotLogWriter no_log{std::string()};
-    RobotPort port(robot.port, oi::default_baud(robot.model));
-    const RobotIdentity identity = meet_robot(port, told, no_log);
-    model_ = identity.model;
+    RobotPort port(robot.port);
+    model_ = meet_robot(port, robot.model, no_log).model;
     commands_ = oi::CommandReader(model_);
     guard_ = start_guard(port.fd(), port.address(), orders_for(model_));
   } catch (...) {

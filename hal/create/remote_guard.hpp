@@ -31,10 +31,10 @@ class RemoteGuard {
   void from_program();
   bool from_robot();
 
-  RobotModel model_;
+  RobotModel model_ = RobotModel::kCreate2;
   Guard guard_;
   int listener_ = -1, program_ = -1;
-  oi::CommandReader commands_;
+  oi::CommandReader commands_{model_};
 };
 
 }  // namespace st

@@ -15,7 +15,8 @@ class RobotPort {
  public:
   // Opens a device (or pseudo-terminal) and claims it alone, or connects to a guard elsewhere. Throws Failure
   // (kDeviceFault): no such port, no permission, in use, not a serial port, nobody listens there.
-  RobotPort(const std::string& path, int baud);
+  // `baud`: of a handshake it is the first that is tried.
+  explicit RobotPort(const std::string& path, int baud = 115200);
   ~RobotPort();
   RobotPort(const RobotPort&) = delete;
   RobotPort& operator=(const RobotPort&) = delete;

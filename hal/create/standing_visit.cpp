@@ -14,16 +14,10 @@ constexpr int kQuiet_ms = 40;  // more than two slots without a byte: the stream
 constexpr int kAnswer_ms = 300;
 constexpr timespec kModeGap{0, 50'000'000};
 
-std::optional<RobotModel> told_model(const RobotOptions& options) {
-  return options.model_given ? std::optional(options.model) : std::nullopt;
-}
-
 }  // namespace
 
 StandingVisit::StandingVisit(const RobotOptions& options)
-    : no_log_(std::string()),
-      port_(options.port, oi::default_baud(options.model)),
-      identity_(meet_robot(port_, told_model(options), no_log_)) {}
+    : no_log_(std::string()), port_(options.port), identity_(meet_robot(port_, options.model, no_log_)) {}
 
 StandingVisit::~StandingVisit() {
   try {

@@ -11,6 +11,7 @@
 #include "hal/system/realtime.hpp"
 #include "hal/system/stop_signal.hpp"
 #include "tools/startrack/commands.hpp"
+#include "tools/startrack/robot_options.hpp"
 
 namespace st {
 namespace {
@@ -20,7 +21,6 @@ constexpr int kRobotPriority = 60;  // above the loop, below the guard
 
 struct Arguments {
   sim::CreatePtyOptions pty;
-  std::string model = "create2";
   std::vector<std::string> events;
   double seconds = 0, json_hz = 0;
   bool quiet = false, events_from_stdin = false;
@@ -80,7 +80,6 @@ class StdinEvents {
 };
 
 int run(Arguments& arguments) {
-  arguments.pty.robot.model = arguments.model == "create1" ? RobotModel::kCreate1 : RobotModel::kCreate2;
   for (const std::string& text : arguments.events)
     arguments.pty.events.push_back(sim::parse_world_event(text));
   watch_stop_signals();
@@ -111,9 +110,10 @@ int run(Arguments& arguments) {
 
 void add_robot_options(CLI::App& command, Arguments& arguments) {
   sim::CreateOptions& robot = arguments.pty.robot;
-  command.add_option("--model", arguments.model, "create1 (57600 baud) or create2 (115200 baud)")
-      ->check(CLI::IsMember({"create1", "create2"}))
-      ->capture_default_str();
+  command.add_option("--model", robot.model, "create1 (57600 baud) or create2 (115200 baud)")
+      ->transform(robot_models())
+      ->type_name("")
+      ->default_str("create2");
   command.add_option("--seed", robot.seed, "of slip and line noise")->capture_default_str();
   command
       .add_option("--slip", robot.errors.slip_noise, "standard deviation of each wheel's slip, 0.02 is 2 %")

@@ -30,7 +30,7 @@ constexpr double kSettle_s = 0.1, kLongestSettle_s = 1.0;
 
 struct Arguments {
   RobotOptions robot;
-  std::string model, path, on_bump = "end";
+  std::string path, on_bump = "end";
   std::string listen;
   bool rules = false, guard = false;
 };
@@ -53,8 +53,7 @@ class Drive {
       const double t_s = now_s(), passed_s = std::min(t_s - last_s, kLongestTick_s);
       last_s = t_s;
       listen();
-      const Reaction reaction =
-          supervisor_.judge(t_s, status_, {}, 0.5 * (speeds.left_mps + speeds.right_mps));
+      const Reaction reaction = supervisor_.judge(t_s, status_, {}, speeds);
       if (reaction == Reaction::kEnd) break;
       speeds = {};
       if (reaction == Reaction::kHold)
@@ -143,15 +142,8 @@ class Drive {
   bool live_;
 };
 
-RobotOptions options_of(const Arguments& arguments) {
-  RobotOptions options = arguments.robot;
-  options.model_given = !arguments.model.empty();
-  if (arguments.model == "create1") options.model = RobotModel::kCreate1;
-  return options;
-}
-
 int drive(const Arguments& arguments) {
-  const RobotOptions options = options_of(arguments);
+  const RobotOptions& options = arguments.robot;
   const Path path = load_path(arguments.path);
   watch_stop_signals();
   const std::unique_ptr<DriveBase> robot = open_robot(options);
@@ -181,7 +173,7 @@ int guard(const Arguments& arguments) {
   if (arguments.robot.port.empty() || arguments.listen.empty())
     throw Failure(ExitCode::kBadInput, "--guard needs --robot PORT and --listen [HOST:]PORT");
   watch_stop_signals();
-  RemoteGuard remote(options_of(arguments), arguments.listen);
+  RemoteGuard remote(arguments.robot, arguments.listen);
   std::printf("guard: a Create %d at %s; programs reach it at port %d\n",
               remote.model() == RobotModel::kCreate1 ? 1 : 2, arguments.robot.port.c_str(), remote.port());
   std::fflush(stdout);
@@ -222,8 +214,9 @@ void add_drive(CLI::App& app, int& exit_code) {
   command->add_option("--path", arguments->path, "path program: .toml, or .csv way points")
       ->type_name("FILE");
   add_drive_options(*command, arguments->robot, arguments->on_bump);
-  command->add_option("--model", arguments->model, "create1 or create2; found out when left out")
-      ->check(CLI::IsMember({"create1", "create2"}));
+  command->add_option("--model", arguments->robot.model, "create1 or create2; found out when left out")
+      ->transform(robot_models())
+      ->type_name("");
   command->add_flag("--guard", arguments->guard,
                     "hold --robot for a program elsewhere, and stop it when that falls silent");
   command

@@ -9,13 +9,13 @@
 #include "hal/error.hpp"
 #include "hal/system/stop_signal.hpp"
 #include "tools/startrack/commands.hpp"
+#include "tools/startrack/robot_options.hpp"
 
 namespace st {
 namespace {
 
 struct Arguments {
   RobotOptions robot;
-  std::string model;
   std::vector<std::string> lines;
   double seconds = 2;
 };
@@ -32,12 +32,9 @@ void print_sensors(StandingVisit& robot) {
   }
 }
 
-int run(Arguments& arguments) {
-  RobotOptions& options = arguments.robot;
-  options.model_given = !arguments.model.empty();
-  if (arguments.model == "create1") options.model = RobotModel::kCreate1;
+int run(const Arguments& arguments) {
   watch_stop_signals();
-  StandingVisit robot(options);
+  StandingVisit robot(arguments.robot);
   // All of them are understood before the first is sent.
   std::vector<oi::Command> commands;
   for (const std::string& line : arguments.lines) commands.push_back(accessory_command(robot.model(), line));
@@ -64,8 +61,9 @@ void add_robot(CLI::App& app, int& exit_code) {
   command->add_option("--robot", arguments->robot.port, "a serial device, or tcp:HOST:PORT")
       ->required()
       ->type_name("PORT");
-  command->add_option("--model", arguments->model, "create1 or create2; found out when left out")
-      ->check(CLI::IsMember({"create1", "create2"}));
+  command->add_option("--model", arguments->robot.model, "create1 or create2; found out when left out")
+      ->transform(robot_models())
+      ->type_name("");
   command->add_option("--seconds", arguments->seconds, "how long lights and outputs stay on")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();

@@ -12,6 +12,7 @@
 #include "hal/error.hpp"
 #include "hal/sim/sim_recording.hpp"
 #include "tools/startrack/commands.hpp"
+#include "tools/startrack/robot_options.hpp"
 
 namespace st {
 namespace {
@@ -19,7 +20,8 @@ namespace {
 std::atomic<bool> g_stop{false};
 
 struct Options {
-  std::string scene, folder, path_file, robot = "create2";
+  std::string scene, folder, path_file;
+  RobotModel robot = RobotModel::kCreate2;
   std::uint64_t seed = 1;
   double seconds = 0;
   bool laptop = false, force = false;
@@ -62,7 +64,7 @@ int simulate(const Options& o) {
   sim::SceneOptions scene;
   scene.name = o.scene;
   scene.seed = o.seed;
-  scene.robot = o.robot == "create1" ? RobotModel::kCreate1 : RobotModel::kCreate2;
+  scene.robot = o.robot;
   scene.laptop = o.laptop;
   scene.seconds = o.seconds;
   if (!o.path_file.empty()) scene.path = commands_of(load_path(o.path_file));
@@ -101,8 +103,9 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "--path", options->path_file,
       "Preset path of the first robot instead of the scene's own: TOML program or CSV way points");
   command->add_option("--robot-model", options->robot, "create1 or create2")
-      ->check(CLI::IsMember({"create1", "create2"}))
-      ->capture_default_str();
+      ->transform(robot_models())
+      ->type_name("")
+      ->default_str("create2");
   command->add_flag("--laptop", options->laptop, "An open laptop lies on the first robot");
   command->add_option("--seconds", options->seconds, "Length instead of the scene's own")
       ->check(CLI::PositiveNumber);

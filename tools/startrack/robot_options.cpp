@@ -2,6 +2,16 @@
 
 namespace st {
 
+CLI::Validator robot_models() {
+  const auto to_number = [](std::string& word) -> std::string {
+    if (word != "create1" && word != "create2") return word + " is no model; there are create1 and create2";
+    const RobotModel model = word == "create1" ? RobotModel::kCreate1 : RobotModel::kCreate2;
+    word = std::to_string(static_cast<int>(model));
+    return {};
+  };
+  return {to_number, "create1|create2"};
+}
+
 void add_drive_options(CLI::App& command, RobotOptions& robot, std::string& on_bump) {
   command.add_option("--robot", robot.port, "a serial device such as /dev/ttyUSB0, tcp:HOST:PORT, or sim")
       ->type_name("PORT");

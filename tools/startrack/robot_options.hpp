@@ -8,6 +8,9 @@
 
 namespace st {
 
+// For an option that names a model: ->transform(robot_models())->type_name("").
+CLI::Validator robot_models();
+
 // --robot, the wheels' measured sizes, --on-bump.
 void add_drive_options(CLI::App& command, RobotOptions& robot, std::string& on_bump);
 Reaction reaction_on_bump(const std::string& word);
