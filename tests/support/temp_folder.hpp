@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace st {
@@ -18,6 +19,11 @@ class TempFolder {
   TempFolder& operator=(const TempFolder&) = delete;
   const std::string& path() const { return path_; }
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+  // The path of a file in it, written if there is something to write.
+  std::string file(const std::string& name, const std::string& content = {}) const {
+    if (!content.empty()) std::ofstream(*this / name) << content;
+    return *this / name;
+  }
 
  private:
   std::string path_;

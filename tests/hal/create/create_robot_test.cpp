@@ -94,7 +94,7 @@ TEST(CreateRobot, PortSimBringsItsOwnRobotAndItsState) {
 }
 
 TEST(CreateRobot, TheLogHoldsEveryByteAndDecodesToTheSameWay) {
-  TemporaryFolder folder;
+  TempFolder folder;
   const std::string log = folder.file("robot.log");
   Drive drive{open_robot(on_port("sim", log)), DeadReckoning(0.235), {}};
   drive.keep(0.15, 0.25, 700);
@@ -235,7 +235,7 @@ TEST(CreateRobot, SaysWhenNobodyAnswers) {
   STRCMP_CONTAINS("no answer", refusal(on_port(simulated.port())).c_str());
   SimulatedRobot other({"--model", "create1"});
   RobotOptions told = on_port(other.port());
-  told.model_given = true;
+  told.model = RobotModel::kCreate2;
   STRCMP_CONTAINS("answers like a Create 1", refusal(told).c_str());
 }
 

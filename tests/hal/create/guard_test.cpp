@@ -45,7 +45,7 @@ Bytes joined(const Bytes& a, const Bytes& b) {
 }  // namespace
 
 TEST_GROUP(Guard) {
-  TemporaryFolder folder;
+  TempFolder folder;
   std::string name = folder.file("robot");
   int master = -1, port = -1;
   Guard guard;

@@ -3,19 +3,19 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "hal/clock.hpp"
 #include "hal/create/sim_state_file.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace st::test {
 
@@ -24,11 +24,7 @@ inline void sleep_ms(int ms) {
   nanosleep(&t, nullptr);
 }
 
-inline std::int64_t monotonic_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
-}
+inline std::int64_t monotonic_ns() { return system_clock().monotonic_ns(); }
 
 // Runs the program under test with its output thrown away, in a process group of its own. `in`: its stdin.
 inline pid_t start_program(std::vector<std::string> arguments, int in = -1) {
@@ -53,23 +49,6 @@ inline int wait_for_exit(pid_t pid, int timeout_ms) {
   }
   return -1000;
 }
-
-// A folder of its own that goes away with it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = std::filesystem::temp_directory_path() / "startrack-test-XXXXXX";
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  std::string file(const std::string& name, const std::string& content = {}) const {
-    if (!content.empty()) std::ofstream(path_ + "/" + name) << content;
-    return path_ + "/" + name;
-  }
-
- private:
-  std::string path_;
-};
 
 // `startrack create-sim` as a process, and its true state.
 class SimulatedRobot {
@@ -106,7 +85,7 @@ class SimulatedRobot {
   }
   bool up() const { return state_ != nullptr; }
   std::string port() const { return folder_.file("robot"); }
-  const TemporaryFolder& folder() const { return folder_; }
+  const TempFolder& folder() const { return folder_; }
   SimStateEntry now() const {
     SimStateEntry entry;
     if (state_) state_->newest(entry);
@@ -120,7 +99,7 @@ class SimulatedRobot {
   const SimStateReader& state() const { return *state_; }
 
  private:
-  TemporaryFolder folder_;
+  TempFolder folder_;
   pid_t pid_ = -1;
   int events_ = -1;
   std::unique_ptr<SimStateReader> state_;

@@ -11,7 +11,7 @@ using namespace st;
 TEST_GROUP(SimStateFile){};
 
 TEST(SimStateFile, HoldsTheLastEntriesAndOnlyThose) {
-  const test::TemporaryFolder folder;
+  const TempFolder folder;
   SimStateWriter writer(folder.file("state"));
   const SimStateReader reader(folder.file("state"));
   SimStateEntry entry;
@@ -29,7 +29,7 @@ TEST(SimStateFile, HoldsTheLastEntriesAndOnlyThose) {
 }
 
 TEST(SimStateFile, SaysWhenThereIsNoRobotBehindIt) {
-  const test::TemporaryFolder folder;
+  const TempFolder folder;
   CHECK_THROWS(Failure, SimStateReader(folder.file("none")));
   CHECK_THROWS(Failure, SimStateReader(folder.file("short", "not a state")));
   CHECK_THROWS(Failure, SimStateReader(folder.file("foreign", std::string(sizeof(SimStateRing), 'x'))));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "algo/core/scalar_math.hpp"
+#include "tests/support/temp_folder.hpp"
 
 #include <CppUTest/TestHarness.h>  // last: its macro for new breaks the headers of the standard library
 
@@ -42,12 +43,8 @@ int simulate(const std::string& arguments) {
 }  // namespace
 
 TEST_GROUP(SimRecording) {
-  fs::path folder;
-  void setup() override {
-    char name[] = "/tmp/startrack-sim-XXXXXX";
-    folder = mkdtemp(name);
-  }
-  void teardown() override { fs::remove_all(folder); }
+  TempFolder temporary;
+  const fs::path folder = temporary.path();
 
   void record(const char* scene, std::uint64_t seed, const fs::path& into, double seconds = 0.6) {
     SceneOptions o;

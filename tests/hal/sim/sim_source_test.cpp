@@ -1,17 +1,16 @@
 #include "hal/sim/sim_source.hpp"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <string>
 
 #include "hal/clock.hpp"
+#include "hal/create/sim_state_file.hpp"
 #include "hal/error.hpp"
 #include "hal/sim/robot_state_reader.hpp"
+#include "tests/support/temp_folder.hpp"
 
 #include <CppUTest/TestHarness.h>  // last: its macro for new breaks the headers of the standard library
 
@@ -22,28 +21,14 @@ namespace {
 // A state file as the simulated Create publishes it.
 class StateFile {
  public:
-  StateFile() {
-    const int file = mkstemp(path_);
-    if (ftruncate(file, sizeof(SimStateRing)) != 0) FAIL("no room in /tmp");
-    void* memory = mmap(nullptr, sizeof(SimStateRing), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    close(file);
-    ring = std::construct_at(static_cast<SimStateRing*>(memory));
-  }
-  ~StateFile() {
-    munmap(ring, sizeof(SimStateRing));
-    unlink(path_);
-  }
   void put(std::int64_t ns, double x, double yaw = 0, double v = 0) {
-    const std::uint64_t i = ring->written.load();
-    ring->entries[i % SimStateRing::kEntries] = {ns, x, 0, yaw, v, v, v, 0};
-    ring->written.store(i + 1, std::memory_order_release);
+    writer_.publish({ns, x, 0, yaw, v, v, v, 0});
   }
-  std::string path() const { return path_; }
-
-  SimStateRing* ring = nullptr;
+  std::string path() const { return folder_ / "state"; }
 
  private:
-  char path_[32] = "/tmp/startrack-state-XXXXXX";
+  TempFolder folder_;
+  SimStateWriter writer_{path()};
 };
 
 }  // namespace
@@ -75,7 +60,7 @@ TEST(RobotStateReader, StillInterpolatesWhenTheRingHasGoneRound) {
 
 TEST(RobotStateReader, RefusesAFileThatIsNone) {
   CHECK_THROWS(Failure, sim::RobotStateReader("/tmp/startrack-there-is-none"));
-  file.ring->magic = 1;
+  std::ofstream(file.path(), std::ios::in | std::ios::binary) << "none";  // over its first bytes, the magic
   CHECK_THROWS(Failure, sim::RobotStateReader(file.path()));
 }
 

@@ -2,11 +2,11 @@
 #include "hal/system/checks.hpp"
 
 #include <CppUTest/TestHarness.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "tests/support/temp_folder.hpp"
 
 using namespace st;
 
@@ -16,14 +16,8 @@ namespace fs = std::filesystem;
 using Level = Finding::Level;
 
 struct Machine {
-  std::string root;
-  Machine() {
-    char name[] = "/tmp/startrack-machine-XXXXXX";
-    root = mkdtemp(name);
-  }
-  ~Machine() { fs::remove_all(root); }
-  Machine(const Machine&) = delete;
-  Machine& operator=(const Machine&) = delete;
+  TempFolder folder;
+  const std::string& root = folder.path();
 
   void file(const std::string& path, const std::string& text) const {
     fs::create_directories(fs::path(root + path).parent_path());

@@ -15,7 +15,7 @@ using namespace st::test;
 TEST_GROUP(CreatePty){};
 
 TEST(CreatePty, MakesItsLinkAndTakesItAway) {
-  TemporaryFolder folder;
+  TempFolder folder;
   sim::CreatePtyOptions options;
   options.link_path = folder.file("robot");
   {
@@ -26,7 +26,7 @@ TEST(CreatePty, MakesItsLinkAndTakesItAway) {
 }
 
 TEST(CreatePty, ReplacesTheLinkOfADeadSimulatorAndNothingElse) {
-  TemporaryFolder folder;
+  TempFolder folder;
   sim::CreatePtyOptions options;
   options.link_path = folder.file("robot");
   std::filesystem::create_symlink("/dev/pts/99999", options.link_path);
@@ -52,7 +52,7 @@ TEST(CreatePty, SeesTheSpeedThatTheDriverSets) {
 }
 
 TEST(CreatePty, PublishesAThousandStatesASecond) {
-  TemporaryFolder folder;
+  TempFolder folder;
   sim::CreatePtyOptions options;
   options.state_path = folder.file("state");
   sim::CreatePty pty(options);
