@@ -3,11 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "algo/core/bump.hpp"
 #include "algo/core/records.hpp"
-#include "firmware_like/latency_histogram.hpp"
 
 namespace st {
 
@@ -33,30 +30,20 @@ struct BudgetCounts {
   std::uint64_t deadline_misses = 0;  // not done when the next frame was due
 };
 
+// Deadlines are judged on CPU time: a PC that is overloaded by something else would be blamed on the loop.
 class BudgetMonitor {
  public:
-  // `wall_holds`: the loop has real-time priority, so that wall time is its own doing; otherwise deadlines
-  // are judged on CPU time, since an overloaded PC would be blamed on the loop.
-  BudgetMonitor(BudgetColumn column, double period_s, bool wall_holds);
-  void bind(Bump& bump);
+  BudgetMonitor(BudgetColumn column, double period_s) : column_(column), period_us_(period_s * 1e6) {}
 
   // Counts the frame and sets report.deadline_missed. Takes the times of stages from the report. No heap.
   void count(FrameReport& report);
 
   const BudgetCounts& counts() const { return counts_; }
-  const LatencyHistogram& stage(Stage stage) const { return histograms_[static_cast<std::size_t>(stage)]; }
-  const LatencyHistogram& frame() const { return histograms_[kStageCount]; }
-  const LatencyHistogram& cpu() const { return histograms_[kStageCount + 1]; }
-
-  // What the frame cost of the time until its deadline.
-  float judged_us(const FrameReport& report) const;
 
  private:
   BudgetColumn column_;
   double period_us_;
-  bool wall_holds_;
   BudgetCounts counts_;
-  std::span<LatencyHistogram> histograms_;
 };
 
 }  // namespace st

@@ -37,8 +37,8 @@ class Degradation {
   static constexpr int kEasyFrames = 30;       // this many in a row before one step back
   static constexpr int kMostEasyFrames = 480;  // each relapse doubles the wait, up to this
 
-  // The frame just done cost `judged_us` (BudgetMonitor::judged_us). Returns the level for the next one.
-  int next(double judged_us);
+  // The frame just done cost `cpu_us`. Returns the level for the next one.
+  int next(double cpu_us);
   int level() const { return level_; }
 
  private:

@@ -115,7 +115,7 @@ void Loop::publish() {
   stages_.done(Stage::kPublish);
   stages_.end_frame();
   parts_.budget.count(report_);
-  if (parts_.source.info().live) degradation_.next(parts_.budget.judged_us(report_));
+  if (parts_.source.info().live) degradation_.next(report_.cpu_us);
   parts_.telemetry.offer(report_);
 }
 

@@ -10,9 +10,10 @@
 #include "firmware_like/finish_run.hpp"
 #include "firmware_like/loop.hpp"
 #include "firmware_like/memory_plan.hpp"
-#include "firmware_like/model_meshes.hpp"
 #include "firmware_like/path_file.hpp"
+#include "firmware_like/progress_line.hpp"
 #include "firmware_like/sealed_section.hpp"
+#include "firmware_like/session_end.hpp"
 #include "hal/results/run_folder.hpp"
 #include "hal/system/arena.hpp"
 #include "hal/system/key_stop.hpp"
@@ -42,65 +43,12 @@ void choose_simd(const std::string& name) {
   }
 }
 
-// Frame count and speed, while somebody looks.
-class ProgressLine final : public TelemetrySink {
- public:
-  explicit ProgressLine(std::uint64_t expected) : expected_(expected) {}
-  void take(const FrameReport& report) override {
-    ++frames_;
-    tracked_ = 0;
-    for (const ObjectSample& object : report.objects) tracked_ += object.in_tum ? 1 : 0;
-  }
-  void flush() override {
-    if (expected_ > 0)
-      std::fprintf(stderr, "\rframe %llu of %llu, %d object(s) tracked ",
-                   static_cast<unsigned long long>(frames_), static_cast<unsigned long long>(expected_),
-                   tracked_);
-    else
-      std::fprintf(stderr, "\rframe %llu, %d object(s) tracked ", static_cast<unsigned long long>(frames_),
-                   tracked_);
-  }
-  ~ProgressLine() override {
-    if (frames_ > 0) std::fputc('\n', stderr);
-  }
-
- private:
-  std::uint64_t expected_, frames_ = 0;
-  int tracked_ = 0;
-};
-
 std::vector<PathSample> sampled(const Path& path) {
   std::vector<PathSample> samples;
   constexpr double kStep_s = 1.0 / 30.0;
   for (double t = 0; t < path.duration_s(); t += kStep_s) samples.push_back(sample(path, t));
   samples.push_back(sample(path, path.duration_s()));
   return samples;
-}
-
-Ending ending_of(LoopEnd why) {
-  switch (why) {
-    case LoopEnd::kSignal:
-      return Ending::kInterrupted;
-    case LoopEnd::kSourceFault:
-    case LoopEnd::kRobotFault:
-      return Ending::kFault;
-    case LoopEnd::kResultsFailed:
-      return Ending::kDiskFull;
-    default:
-      return Ending::kDone;
-  }
-}
-
-// 1 when an object was confirmed and at the end none is good and none has left through the edge, or a live
-// run missed more than 0.1 % of its deadlines.
-ExitCode exit_code_of(const RunEnd& end) {
-  if (end.ending == Ending::kInterrupted) return ExitCode::kInterrupted;
-  if (end.ending == Ending::kFault) return ExitCode::kDeviceFault;
-  bool well = end.objects.empty();
-  for (const ObjectEnd& object : end.objects) well = well || object.good_at_end || object.left_view;
-  if (!well) return ExitCode::kTrackFailed;
-  if (end.info.live && end.deadline_misses * 1000 > end.frames) return ExitCode::kTrackFailed;
-  return ExitCode::kDone;
 }
 
 // Runs the loop on a thread of its own: its name, priority and heap guard are the thread's.
@@ -147,15 +95,10 @@ SessionResult run_session(const SessionOptions& options) {
 
   ObjectTracker tracker(info.calibration, options.loop);
   ReportRing ring;
-  BudgetMonitor budget(BudgetColumn::kObject, info.frame_period_s, false);
+  BudgetMonitor budget(BudgetColumn::kObject, info.frame_period_s);
   MemoryPlan plan;
   tracker.plan_memory(plan);
-  plan.add("timing statistics", "firmware_like", budget);
-  struct RingPart {
-    ReportRing& ring;
-    void bind(Bump& memory) { ring.bind(memory); }
-  } ring_part{ring};
-  plan.add("reports on their way out", "hal/results", ring_part);
+  plan.add("reports on their way out", "hal/results", ring);
   Arena arena(plan.bytes());
   plan.seal(arena.bump());
   plan.print(stderr);
@@ -193,25 +136,8 @@ SessionResult run_session(const SessionOptions& options) {
   end.planned_bytes = plan.bytes();
   end.deadline_misses = budget.counts().deadline_misses;
   ModelMeshes meshes;
-  for (const ObjectCount& count : tracker.counts()) {
-    ObjectEnd object;
-    object.id = count.id;
-    object.first_t_s = count.first_t_s;
-    object.last_t_s = count.last_t_s;
-    object.tracked = count.tracked;
-    object.lost = count.lost;
-    if (count.aligned > 0)
-      object.iterations_mean = static_cast<double>(count.iterations) / static_cast<double>(count.aligned);
-    object.good_at_end = count.good_at_end;
-    object.left_view = count.left_view;
-    for (const Track& track : tracker.tracks())
-      if (track.id == count.id && !mesh_unwanted()) object.mesh = meshes.extract(track.volume);
-    end.objects.push_back(object);
-  }
-  // Driven open loop, the robot is the object that went with it: the one that was tracked for longest.
-  std::uint64_t longest = 0;
-  for (const ObjectEnd& object : end.objects)
-    if (driver && object.tracked > longest) longest = object.tracked, end.steering_object = object.id;
+  end.objects = object_ends(tracker, meshes);
+  if (driver) end.steering_object = longest_tracked(end.objects);
   end.peak_rss_bytes = peak_rss_bytes();
   finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});
   result.code = exit_code_of(end);

@@ -1,0 +1,23 @@
+#include "firmware_like/progress_line.hpp"
+
+#include <cstdio>
+
+namespace st {
+
+ProgressLine::~ProgressLine() {
+  if (frames_ > 0) std::fputc('\n', stderr);
+}
+
+void ProgressLine::take(const FrameReport& report) {
+  ++frames_;
+  tracked_ = 0;
+  for (const ObjectSample& object : report.objects) tracked_ += object.in_tum ? 1 : 0;
+}
+
+void ProgressLine::flush() {
+  std::fprintf(stderr, "\rframe %llu", static_cast<unsigned long long>(frames_));
+  if (expected_ > 0) std::fprintf(stderr, " of %llu", static_cast<unsigned long long>(expected_));
+  std::fprintf(stderr, ", %d object(s) tracked ", tracked_);
+}
+
+}  // namespace st

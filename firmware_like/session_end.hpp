@@ -1,0 +1,26 @@
+// What a run comes to once its loop has ended: its ending, its exit code, and what became of each object.
+#pragma once
+
+#include <vector>
+
+#include "firmware_like/loop.hpp"
+#include "firmware_like/model_meshes.hpp"
+#include "hal/error.hpp"
+#include "hal/results/run_end.hpp"
+
+namespace st {
+
+Ending ending_of(LoopEnd why);
+
+// kTrackFailed when an object was confirmed and at the end none is good and none has left through the view's
+// edge, or a live run missed more than 0.1 % of its deadlines.
+ExitCode exit_code_of(const RunEnd& end);
+
+// Every object that was confirmed, in the order of their numbers; with its mesh, kept by `meshes`, unless a
+// second Ctrl-C asked for none.
+std::vector<ObjectEnd> object_ends(const ObjectTracker& tracker, ModelMeshes& meshes);
+
+// The robot of an open loop is the object that went with it: the one that was tracked for longest. 0: none.
+int longest_tracked(const std::vector<ObjectEnd>& objects);
+
+}  // namespace st
