@@ -69,7 +69,7 @@ void ObjectTracker::begin_released() {
     for (int u = box.u0; u < box.u1; ++u) {
       if (!(rest_z_(u, v) > 0) || seen++ % every != 0) continue;
       points[used].p = frame_.camera.ray(static_cast<float>(u), static_cast<float>(v)) * rest_z_(u, v);
-      points[used++].luminance = -1;
+      ++used;
     }
   }
   if (used < kLeastPoints) return;
@@ -99,8 +99,8 @@ bool ObjectTracker::begin_from_pixels(const Unexplained& what) {
   if (k == kMaxObjects) return false;
   Track& track = tracks_[k];
   claim_pixels(what, k);
-  track.motion = MotionFilter{};  // how it moves is not known
-  observe(track, k, what.box, true);
+  track.aligned = AlignResult{};  // how it moves is not known
+  observe(track, k, what.box);
   if (track.points_used < kLeastPoints) return false;
   start_track(track, find_footprint(points_of(k).first(track.points_used), support_), support_,
               frame_.input->device_t_s);

@@ -85,8 +85,9 @@ class ObjectTracker {
   AlignInput alignment_of(const Track& track, std::size_t k) const;
   std::span<ObservedPoint> points_of(std::size_t k);
   void render_one(Track& track, const Pose& T);
-  void observe(Track& track, std::size_t k, const Rect& box, bool with_color);
-  ImageView<std::uint32_t> colors_of(const Track& track) const;
+  void observe(Track& track, std::size_t k, const Rect& box);
+  void look_at_colors(const Rect& box, const LadderStep& step);
+  ImageView<std::uint32_t> register_colors(std::size_t k, const Rect& box);
   void keep_shape(const Track& track, std::size_t k);
   void fuse(Track& track, std::size_t k);
   void remember(const Track& track, std::size_t k);
@@ -97,7 +98,7 @@ class ObjectTracker {
   bool is_proven(const Track& candidate) const;
   void confirm_proven();
   void lose(Track& track);
-  void search_step(int tries);
+  void search_step(const LadderStep& step);
   void start_search();
   bool start_search_in(const Unexplained& what, std::size_t k);
   bool start_search_in_candidate(std::size_t j, std::size_t k);
@@ -147,6 +148,7 @@ class ObjectTracker {
   AlignScratch scratch_;
   FrameViewMemory previous_[kMaxObjects];  // frame-to-frame mode: the view of the frame before
   ModelCloud clouds_[kMaxObjects];         // listing1 mode: the models as points
+  ColorFrame color_frame_;                 // of where the objects are, or where one is searched
   ImageView<float> rest_z_;
   ImageView<std::uint32_t> registered_color_;  // of the objects' pixels, pack_rgb
   IntegrateScratch integrate_scratch_;

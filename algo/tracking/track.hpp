@@ -96,7 +96,6 @@ struct Track {
   ModelView view;  // what this frame is aligned with: rendered, or in frame-to-frame mode the frame before
   int view_pixels = 0;  // with a surface
   std::size_t points_used = 0;
-  bool colored = false;  // the colours of its pixels were taken over in this frame
   AlignResult aligned;
   Agreement agreement;
   Verdict verdict = Verdict::kLost;
