@@ -316,7 +316,6 @@ void ObjectTracker::judge_one(Track& track) {
   else
     track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
   track.T_camera_object = track.aligned.T_camera_object;
-  for (int i = 0; i < 36; ++i) track.covariance[i] = track.aligned.covariance[i];
   track.state = TrackState::kGood;
   track.poor_run = 0;
   ++track.good_poses;

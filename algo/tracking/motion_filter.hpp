@@ -67,6 +67,8 @@ class MotionFilter {
   // How the pose at t_s() + lag_s, the time of a colour image, hangs together with that at t_s().
   ColorTime color_time(double lag_s) const;
   double position_sigma_m() const;
+  // Of the pose as it stands, row-major 6x6: position, then turn, camera axes.
+  void covariance(double (&out)[36]) const;
 
  private:
   struct Axis {
@@ -88,6 +90,7 @@ class MotionFilter {
     double variance, with_value, with_rate;
   };
   Then then(int axis, double lag_s) const;
+  void in_camera_axes(bool inverse, double (&out)[36]) const;
   void update_output(const Pose& before, double dt_s);
   MotionOutput output_;
   Pose corrected_;  // newest corrected pose and its time, for the published rates

@@ -86,7 +86,6 @@ struct Track {
   int published_gap = 0;   // predicted rows in a row
   double last_good_t_s = 0;
   double yaw_unwrapped = 0;  // as published, floor frame
-  double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
 
   bool planar = true;     // rests on the floor: floor prior applies
   int off_floor_run = 0;  // frames in a row that contradict it
