@@ -14,7 +14,8 @@ struct LoopConfig {
       0;  // frame-to-frame: 0 never, else a keyframe is kept for so many frames (calibration stage)
   int volume_side = 128;  // voxels a side of each object's volume
   bool use_contour = true, use_color = true, use_floor = true, use_motion = true;
-  double seconds = 0;  // stop after so much recorded (or live) time; 0: at the end
+  double camera_lag_s = 0;  // the camera's delay beyond that of the wheels' reports (calibrated)
+  double seconds = 0;       // stop after so much recorded (or live) time; 0: at the end
 };
 
 }  // namespace st

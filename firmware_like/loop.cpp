@@ -8,13 +8,18 @@ namespace {
 constexpr int kWait_ms = 100;     // how often a waiting loop looks for a signal
 constexpr int kSilentWaits = 50;  // five seconds without a frame from a live source: it is gone
 
+double wheel_base_m(const LoopParts& parts) {
+  return parts.driver != nullptr ? parts.driver->wheel_base_m() : parts.source.info().wheel_base_m;
+}
+
 }  // namespace
 
 Loop::Loop(const LoopParts& parts, const LoopConfig& config)
     : parts_(parts),
       config_(config),
       stages_(parts.clock),
-      degradation_(parts.source.info().frame_period_s) {}
+      degradation_(parts.source.info().frame_period_s),
+      wheels_(wheel_base_m(parts), config.camera_lag_s) {}
 
 // STAR, Listing 1: segment, align with the model, judge, fuse into the model; for every object, every frame.
 LoopEnd Loop::run() {
@@ -86,6 +91,8 @@ bool Loop::acquire() {
     }
     break;
   }
+  if (parts_.driver != nullptr) parts_.driver->listen(input_.odometry);
+  if (wheel_base_m(parts_) > 0) wheels_.take(input_);
   if (frames_ == 0) first_t_s_ = input_.t_s;
   if (config_.seconds > 0 && input_.t_s - first_t_s_ > config_.seconds) return stop(LoopEnd::kTimeUp);
   report_ = FrameReport{};

@@ -2,6 +2,7 @@
 // stands in algo or behind a seam of hal; everything it touches was bound and populated before run().
 #pragma once
 
+#include "algo/control/wheel_trail.hpp"
 #include "firmware_like/budget.hpp"
 #include "firmware_like/config.hpp"
 #include "firmware_like/degradation.hpp"
@@ -52,6 +53,7 @@ class Loop {
   StageClock stages_;
   Degradation degradation_;
   FrameInput input_;
+  WheelTrail wheels_;
   FrameReport report_;
   LoopEnd end_ = LoopEnd::kSourceEnded;
   int level_ = 0;

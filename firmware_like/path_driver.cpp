@@ -13,8 +13,6 @@ PathDriver::PathDriver(DriveBase& robot, const Path& path, Reaction on_bump)
     : robot_(robot), follower_(path, robot.geometry().wheel_base_m), supervisor_(on_bump) {}
 
 void PathDriver::decide(double now_s, const Sight& sight) {
-  odometry_.clear();
-  robot_.poll(odometry_, status_);
   if (first_s_ < 0) first_s_ = last_s_ = now_s;
   const double passed_s = now_s - last_s_ < kLongestStep_s ? now_s - last_s_ : kLongestStep_s;
   last_s_ = now_s;

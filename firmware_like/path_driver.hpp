@@ -14,6 +14,8 @@ class PathDriver {
   // Robot and path outlive the driver.
   PathDriver(DriveBase& robot, const Path& path, Reaction on_bump);
 
+  // What the robot has told since the last call; once a frame, before decide().
+  void listen(FixedVector<OdometrySample, 64>& odometry) { robot_.poll(odometry, status_); }
   // What the wheels are to do until the next frame. `now_s`: any steady clock.
   void decide(double now_s, const Sight& sight);
   void send();
@@ -26,7 +28,7 @@ class PathDriver {
   // What holds the robot in this frame, for good or for a while.
   RobotFault held_by() const { return supervisor_.fault(); }
   const RobotStatus& status() const { return status_; }
-  const FixedVector<OdometrySample, 64>& odometry() const { return odometry_; }
+  double wheel_base_m() const { return robot_.geometry().wheel_base_m; }
   bool finished(double now_s) const;  // the path is driven, and the robot has stood for a while
 
   static constexpr double kStillBefore_s = 1.5;  // for the background to be learned
@@ -39,7 +41,6 @@ class PathDriver {
   Reaction reaction_ = Reaction::kNone;
   WheelSpeeds speeds_;
   RobotStatus status_;
-  FixedVector<OdometrySample, 64> odometry_;
   double first_s_ = -1, last_s_ = 0, done_s_ = -1;
 };
 
