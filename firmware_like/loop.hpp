@@ -7,7 +7,7 @@
 #include "firmware_like/config.hpp"
 #include "firmware_like/degradation.hpp"
 #include "firmware_like/object_tracker.hpp"
-#include "firmware_like/path_driver.hpp"
+#include "firmware_like/robot_driver.hpp"
 #include "firmware_like/stage_clock.hpp"
 #include "hal/clock.hpp"
 #include "hal/results/result_writer.hpp"
@@ -24,7 +24,7 @@ struct LoopParts {
   BudgetMonitor& budget;
   const Clock& clock;
   const ResultWriter& results;  // a disk that is full ends the run
-  PathDriver* driver;
+  RobotDriver* driver;
 };
 
 // Why run() came back.
@@ -46,6 +46,7 @@ class Loop {
   bool stop(LoopEnd why);
   double now_s() const;
   void drive();
+  DriverView driver_view() const;
   void publish();
 
   LoopParts parts_;

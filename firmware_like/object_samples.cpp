@@ -25,6 +25,21 @@ void floor_sigmas(const double (&covariance)[36], const Mat3& R_floor_camera, Ve
 
 }  // namespace
 
+void ObjectTracker::see(SeenObjects& objects) const {
+  for (const Track& track : tracks_) {
+    if (track.id == 0 || !has_floor_frame_) continue;
+    const Pose T = T_floor_camera_ * track.T_camera_object;
+    const Vec3 middle = track.bounds.empty() ? Vec3{} : track.bounds.centre();
+    SeenObject object;
+    object.id = track.id;
+    object.good = track.phase == Track::Phase::kTracked && track.state == TrackState::kGood &&
+                  track.yaw_source != YawSource::kNone;
+    object.pose = {T.t.x, T.t.y, to_roll_pitch_yaw(T.R).z};
+    object.guess = {middle.x, middle.y, 0.05};
+    objects.push_back(object);
+  }
+}
+
 ObjectSample ObjectTracker::sample_of(Track& track) const {
   ObjectSample s;
   s.id = track.id;

@@ -14,6 +14,7 @@
 #include "firmware_like/progress_line.hpp"
 #include "firmware_like/sealed_section.hpp"
 #include "firmware_like/session_end.hpp"
+#include "hal/create/sim_child.hpp"
 #include "hal/results/run_folder.hpp"
 #include "hal/system/arena.hpp"
 #include "hal/system/key_stop.hpp"
@@ -79,7 +80,7 @@ SessionResult run_session(const SessionOptions& options) {
   // The robot first: its guard is a child process, and children are made before the arena is.
   std::unique_ptr<DriveBase> robot;
   if (!options.robot.port.empty()) robot = open_robot(options.robot);
-  if (robot && options.robot.port != "sim" && !arm_at_terminal()) {
+  if (robot && !is_simulated(options.robot.port) && !arm_at_terminal()) {
     robot->close();
     return {ExitCode::kInterrupted, {}, "not armed; nothing was driven"};
   }
@@ -111,8 +112,10 @@ SessionResult run_session(const SessionOptions& options) {
   if (isatty(STDERR_FILENO) != 0) sinks.push_back(&progress.emplace(info.expected_frames));
   Telemetry telemetry(ring, sinks);
   telemetry.start();
-  std::optional<PathDriver> driver;
-  if (robot && path) driver.emplace(*robot, *path, options.on_bump);
+  std::optional<RobotDriver> driver;
+  if (robot)
+    driver.emplace(*robot, options.closed_loop ? Steering::kClosedLoop : Steering::kOpenLoop,
+                   path ? &*path : nullptr, nullptr, options.on_bump);
   Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr},
             options.loop);
   source->start();
@@ -137,7 +140,7 @@ SessionResult run_session(const SessionOptions& options) {
   end.deadline_misses = budget.counts().deadline_misses;
   ModelMeshes meshes;
   end.objects = object_ends(tracker, meshes);
-  if (driver) end.steering_object = longest_tracked(end.objects);
+  if (driver) name_steering_object(*driver, end);
   end.peak_rss_bytes = peak_rss_bytes();
   finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});
   result.code = exit_code_of(end);

@@ -30,18 +30,19 @@ struct WheelOdometry {
 
 // What a recording lost or damaged on the way to this frame.
 enum class EventKind : std::uint8_t {
-  kDamaged,      // a: frames skipped so far, b: reason (DamageReason)
-  kGap,          // a: seconds since the frame before, b: depth frames missing
-  kConfirmed,    // object given its number
-  kLost,         // a: seconds since its last good pose
-  kRecovered,    // a: seconds without a pose
-  kLeft,         // left through the edge of the view
-  kEvicted,      // its slot went to a newer mover
-  kNoObject,     // nothing ever moved
-  kNoFloor,      // floor frame taken from gravity or the camera
-  kRobotFault,   // a: RobotFault code
-  kVolumeFull,   // surface outside the object's volume was dropped
-  kInterrupted,  // a: signal
+  kDamaged,         // a: frames skipped so far, b: reason (DamageReason)
+  kGap,             // a: seconds since the frame before, b: depth frames missing
+  kConfirmed,       // object given its number
+  kLost,            // a: seconds since its last good pose
+  kRecovered,       // a: seconds without a pose
+  kLeft,            // left through the edge of the view
+  kEvicted,         // its slot went to a newer mover
+  kNoObject,        // nothing ever moved
+  kNoFloor,         // floor frame taken from gravity or the camera
+  kRobotFault,      // a: RobotFault code
+  kSteeringObject,  // obeyed the start motion; a: misfit in metres, b: camera's lag in seconds, c: gain
+  kVolumeFull,      // surface outside the object's volume was dropped
+  kInterrupted,     // a: signal
 };
 const char* name_of(EventKind kind);
 

@@ -2,7 +2,7 @@
 
 #include <CppUTest/TestHarness.h>
 
-#include "firmware_like/path_driver.hpp"
+#include "firmware_like/robot_driver.hpp"
 
 using namespace st;
 
@@ -113,10 +113,14 @@ TEST(SafetySupervisor, HoldsWhileFramesAreLate) {
 TEST(SafetySupervisor, TheDriverStandsForAsLongAsItIsHeldAndGoesOnWithItsPath) {
   FakeBase base;
   const Path path = long_line();
-  PathDriver driver(base, path, Reaction::kHold);
+  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kHold);
+  FixedVector<OdometrySample, 64> odometry;
+  DriverView view;
   const auto drive = [&](double from_s, double to_s, const Sight& sight) {
     for (double t = from_s; t < to_s; t += 1 / 30.0) {
-      driver.decide(t, sight);
+      driver.listen(odometry);
+      view.sight = sight;
+      driver.decide(t, view);
       driver.send();
     }
   };

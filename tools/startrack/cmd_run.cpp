@@ -14,7 +14,9 @@ void add_run(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  startrack run --source kinect --seconds 60\n"
       "  startrack run --source kinect --robot /dev/ttyUSB0 --path examples/paths/circle-0.5.toml\n"
-      "  startrack run --source sim:lab --robot sim --path examples/paths/circle-0.5.toml");
+      "  startrack run --source sim:lab --robot sim --path examples/paths/circle-0.5.toml\n"
+      "  startrack run --source sim:lab --robot sim:right-scale=1.03,slip=0.02 --loop closed --path "
+      "examples/paths/circle-0.5.toml");
   command
       ->add_option("--source", options->source.spec,
                    "kinect[:INDEX or SERIAL], sim:SCENE, or a recording's folder")
@@ -28,6 +30,13 @@ void add_run(CLI::App& app, int& exit_code) {
           [options](const std::uint64_t& seed) { options->source.seed = options->robot.seed = seed; },
           "of the simulated room and robot")
       ->default_str("1");
+  command
+      ->add_option_function<std::string>(
+          "--loop", [options](const std::string& loop) { options->closed_loop = loop == "closed"; },
+          "how the path is driven: open, by dead reckoning, or closed, on the pose at which the robot is "
+          "seen")
+      ->check(CLI::IsMember({"open", "closed"}))
+      ->default_str("open");
   add_session_options(*command, *options);
   command->callback([options, on_bump, &exit_code] {
     options->on_bump = reaction_on_bump(*on_bump);
