@@ -12,11 +12,12 @@
 #include "hal/clock.hpp"
 #include "hal/results/result_writer.hpp"
 #include "hal/results/telemetry.hpp"
+#include "hal/serve/pose_server.hpp"
 #include "hal/source/frame_source.hpp"
 
 namespace st {
 
-// What the loop works with; all outlive it. Without a robot `driver` is null.
+// What the loop works with; all outlive it. Without a robot `driver` is null, without clients `server`.
 struct LoopParts {
   FrameSource& source;
   ObjectTracker& tracker;
@@ -25,6 +26,7 @@ struct LoopParts {
   const Clock& clock;
   const ResultWriter& results;  // a disk that is full ends the run
   RobotDriver* driver;
+  PoseServer* server;
 };
 
 // Why run() came back.
@@ -57,6 +59,7 @@ class Loop {
   WheelTrail wheels_;
   FrameReport report_;
   LoopEnd end_ = LoopEnd::kSourceEnded;
+  ServedFrame served_;
   int level_ = 0;
   std::uint64_t frames_ = 0, skipped_ = 0;
   double first_t_s_ = 0;

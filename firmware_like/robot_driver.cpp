@@ -32,6 +32,9 @@ void RobotDriver::watch(const DriverView& view, double passed_s) {
   if (!wheels.valid) wheels.dt_s = passed_s;
   const double v = 0.5 * (speeds_.left_mps + speeds_.right_mps);
   base_.update(wheels, v, (speeds_.right_mps - speeds_.left_mps) / wheel_base_m(), robot_in(view.objects));
+  const double exposed_s = view.trail->exposure_s() - picked_.lag_s;
+  const WheelOdometry since = view.trail->between(exposed_s, view.host_now_s + kAhead_s);
+  base_now_ = since.valid ? advanced(base_.base(), since.forward_m, since.turn_rad) : base_.base();
 }
 
 void RobotDriver::decide(double now_s, const DriverView& view) {
@@ -80,7 +83,7 @@ WheelSpeeds RobotDriver::next_speeds(double now_s, const DriverView& view, doubl
       return {};
     case Phase::kDriving: {
       if (steering_ == Steering::kClient) return client_speeds(now_s);
-      const WheelSpeeds speeds = path_speeds(view, passed_s);
+      const WheelSpeeds speeds = path_speeds(passed_s);
       if (open_ ? open_->done() : closed_->done()) enter(Phase::kDone, now_s);
       return speeds;
     }
@@ -108,14 +111,9 @@ WheelSpeeds RobotDriver::start_motion_speeds(double now_s, const DriverView& vie
   return {};
 }
 
-WheelSpeeds RobotDriver::path_speeds(const DriverView& view, double passed_s) {
+WheelSpeeds RobotDriver::path_speeds(double passed_s) {
   if (open_) return open_->step(passed_s, kFrame_s);
-  // From the exposure to when this command acts, by the wheels.
-  const double exposed_s = view.trail->exposure_s() - picked_.lag_s;
-  const WheelOdometry since = view.trail->between(exposed_s, view.host_now_s + kAhead_s);
-  Pose2 base = base_.base();
-  if (since.valid) base = advanced(base, since.forward_m, since.turn_rad);
-  return closed_->step(compose(inverse(T_floor_path_), base), passed_s);
+  return closed_->step(compose(inverse(T_floor_path_), base_now_), passed_s);
 }
 
 WheelSpeeds RobotDriver::client_speeds(double now_s) {
@@ -130,6 +128,20 @@ void RobotDriver::wait_without_frame(double now_s) {
   if (phase_since_s_ < 0 || (now_s - last_s_) * 1000 < kStaleFrame_ms) return;
   speeds_ = {};
   robot_.stop();
+}
+
+ServedRobot RobotDriver::served() const {
+  static constexpr const char* kStates[] = {"learning", "start_motion", "standing", "driving", "done"};
+  ServedRobot robot;
+  robot.object = picked_.id;
+  robot.seen = picked_.id != 0 && base_.seen();
+  robot.base = base_.base();
+  robot.base_now = base_now_;
+  robot.told_v_mps = 0.5 * (speeds_.left_mps + speeds_.right_mps);
+  robot.told_w_rps = (speeds_.right_mps - speeds_.left_mps) / wheel_base_m();
+  robot.state = kStates[static_cast<int>(phase_)];
+  robot.held_by = name_of(held_by());
+  return robot;
 }
 
 bool RobotDriver::finished(double now_s) const {

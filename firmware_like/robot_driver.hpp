@@ -11,9 +11,10 @@
 #include "algo/control/motion_match.hpp"
 #include "algo/control/pose_follower.hpp"
 #include "algo/control/wheel_trail.hpp"
-#include "firmware_like/client_command.hpp"
 #include "firmware_like/safety_supervisor.hpp"
 #include "hal/create/drive_base.hpp"
+#include "hal/serve/client_command.hpp"
+#include "hal/serve/served_frame.hpp"
 
 namespace st {
 
@@ -61,6 +62,9 @@ class RobotDriver {
   // The base, while it is known: picked() says so.
   const BaseTracker& base() const { return base_; }
 
+  // All that a client is told of the robot.
+  ServedRobot served() const;
+
   static constexpr double kStillBefore_s = 1.5;  // for the background to be learned
   static constexpr double kStillAfter_s = 1.0;
   static constexpr int kStartMotions = 6;  // tries, after which nothing obeys
@@ -71,7 +75,7 @@ class RobotDriver {
   void watch(const DriverView& view, double passed_s);
   WheelSpeeds next_speeds(double now_s, const DriverView& view, double passed_s);
   WheelSpeeds start_motion_speeds(double now_s, const DriverView& view, double passed_s);
-  WheelSpeeds path_speeds(const DriverView& view, double passed_s);
+  WheelSpeeds path_speeds(double passed_s);
   WheelSpeeds client_speeds(double now_s);
   void enter(Phase phase, double now_s);
   void hold(double passed_s);
@@ -98,6 +102,7 @@ class RobotDriver {
   Obedience picked_;
   double path_begins_t_s_ = -1;
   BaseTracker base_;
+  Pose2 base_now_;  // carried on to when the next command acts
   MotionMatch match_;
   ClientCommand command_;
 };

@@ -52,6 +52,11 @@ std::vector<PathSample> sampled(const Path& path) {
   return samples;
 }
 
+Steering steering_of(const SessionOptions& options) {
+  if (options.path_file.empty()) return Steering::kClient;
+  return options.closed_loop ? Steering::kClosedLoop : Steering::kOpenLoop;
+}
+
 // Runs the loop on a thread of its own: its name, priority and heap guard are the thread's.
 LoopEnd run_loop(Loop& loop, bool live, RunEnd& end) {
   LoopEnd why = LoopEnd::kSourceEnded;
@@ -112,18 +117,27 @@ SessionResult run_session(const SessionOptions& options) {
   if (isatty(STDERR_FILENO) != 0) sinks.push_back(&progress.emplace(info.expected_frames));
   Telemetry telemetry(ring, sinks);
   telemetry.start();
+  std::optional<PoseServer> server;
+  if (!options.serve.empty()) server.emplace(options.serve, robot && !path);
   std::optional<RobotDriver> driver;
   if (robot)
-    driver.emplace(*robot, options.closed_loop ? Steering::kClosedLoop : Steering::kOpenLoop,
-                   path ? &*path : nullptr, nullptr, options.on_bump);
-  Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr},
+    driver.emplace(*robot, steering_of(options), path ? &*path : nullptr,
+                   server ? &server->commands() : nullptr, options.on_bump);
+  Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr,
+             server ? &*server : nullptr},
             options.loop);
   source->start();
+  if (server) {
+    std::printf("serve: port %d\n", server->port());
+    std::fflush(stdout);
+    server->start();
+  }
 
   RunEnd end;
   const LoopEnd why = run_loop(loop, info.live, end);
   if (robot) robot->close();
   source->stop();
+  if (server) server->stop();
   telemetry.stop();
   progress.reset();
 

@@ -13,6 +13,12 @@ constexpr double kPositionShare = 0.4, kYawShare = 0.3;  // of the way to what i
 constexpr double kFarthest_m = 0.08, kFarthest_rad = 0.35;
 constexpr int kMostRefused = 15;  // half a second of poses that agree among themselves: they are right
 
+bool is_far(const Pose2& a, const Pose2& b) {
+  const double dx = a.x - b.x, dy = a.y - b.y;
+  return dx * dx + dy * dy > kFarthest_m * kFarthest_m ||
+         std::fabs(wrap_angle(a.yaw - b.yaw)) > kFarthest_rad;
+}
+
 }  // namespace
 
 Pose2 advanced(const Pose2& base, double forward_m, double turn_rad) {
@@ -59,18 +65,16 @@ void BaseTracker::update(const WheelOdometry& wheels, double told_v_mps, double 
     learn(wheels, object->pose);
     object_ = object->pose;
     const Pose2 measured = compose(object->pose, fit_.T_object_base);
-    const double dx = measured.x - base_.x, dy = measured.y - base_.y;
-    const double turn = wrap_angle(measured.yaw - base_.yaw);
-    const bool far = dx * dx + dy * dy > kFarthest_m * kFarthest_m || std::fabs(turn) > kFarthest_rad;
-    refused_ = far ? refused_ + 1 : 0;
+    refused_ = is_far(measured, base_) ? refused_ + 1 : 0;
     if (refused_ > kMostRefused) {
       base_ = measured;
       refused_ = 0;
     }
     seen_ = refused_ == 0;
     if (seen_)
-      base_ = {base_.x + kPositionShare * dx, base_.y + kPositionShare * dy,
-               wrap_angle(base_.yaw + kYawShare * turn)};
+      base_ = {base_.x + kPositionShare * (measured.x - base_.x),
+               base_.y + kPositionShare * (measured.y - base_.y),
+               wrap_angle(base_.yaw + kYawShare * wrap_angle(measured.yaw - base_.yaw))};
   }
   has_object_ = good;
 }

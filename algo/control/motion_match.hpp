@@ -19,6 +19,7 @@ class MotionMatch {
     BodyMotion window;
     double forward_m = 0, turn_rad = 0, duration_s = 0;
     WheelRegression regression;
+    double turn_square = 0, turn_misfit = 0;  // of the windows, rad^2
     BaseGuess guess;
   };
   void add_to(Entry& entry, const WheelOdometry& wheels, const SeenObject& object);
