@@ -114,6 +114,7 @@ class ObjectTracker {
   void refuse(const Rect& box, std::size_t k);
   void fill_rest(const Rect& box);
   void drop_fragments(const Rect& box);
+  bool in_arena(const Vec3& p_camera) const;
   void begin_released();
   bool is_looked_for_in(const Unexplained& what) const;
   void begin_tracks();
