@@ -32,8 +32,8 @@ void ObjectTracker::see(SeenObjects& objects) const {
     const Vec3 middle = track.bounds.empty() ? Vec3{} : track.bounds.centre();
     SeenObject object;
     object.id = track.id;
-    object.good = track.phase == Track::Phase::kTracked && track.state == TrackState::kGood &&
-                  track.yaw_source != YawSource::kNone;
+    object.good = track.phase == Track::Phase::kTracked && track.state == TrackState::kGood;
+    object.has_heading = track.yaw_source != YawSource::kNone;
     object.pose = {T.t.x, T.t.y, to_roll_pitch_yaw(T.R).z};
     object.guess = {middle.x, middle.y, 0.05};
     objects.push_back(object);

@@ -15,7 +15,7 @@ constexpr double kLeastExplained = 0.75;  // wheels slip, and the tracker is not
 
 // A window's sums, whether anything moved or not: an object that moves while the robot stands is none.
 void MotionMatch::add_to(Entry& entry, const WheelOdometry& wheels, const SeenObject& object) {
-  const bool whole = entry.seen && object.good && wheels.valid;
+  const bool good = object.good && object.has_heading, whole = entry.seen && good && wheels.valid;
   if (whole) {
     entry.window.add(entry.pose, object.pose);
     entry.forward_m += wheels.forward_m;
@@ -32,7 +32,7 @@ void MotionMatch::add_to(Entry& entry, const WheelOdometry& wheels, const SeenOb
     entry.window = {};
     entry.forward_m = entry.turn_rad = entry.duration_s = 0;
   }
-  entry.seen = object.good;
+  entry.seen = good;
   entry.pose = object.pose;
   entry.guess = object.guess;
 }

@@ -70,7 +70,7 @@ std::size_t StartWitness::stretch_of(int id, std::span<Sample> samples, BaseGues
   Pose2 before;
   for (std::size_t i = 0; i < count_; ++i)
     for (const SeenObject& object : frames_[i].objects) {
-      if (object.id != id || !object.good) continue;
+      if (object.id != id || !object.good || !object.has_heading) continue;
       if (n > 0 && i - last > kLongestGap) n = 0;  // the later stretch is the better known one
       Sample sample{frames_[i].t_s, n > 0 ? samples[n - 1].motion : BodyMotion{}};
       if (n > 0) sample.motion.add(before, object.pose);

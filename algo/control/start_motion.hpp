@@ -19,10 +19,11 @@ Path start_motion();
 
 // What the tracker makes of one object in one frame.
 struct SeenObject {
-  int id = 0;         // 0: not confirmed
-  bool good = false;  // the pose is, heading included
-  Pose2 pose;         // floor frame
-  BaseGuess guess;    // from its shape
+  int id = 0;                // 0: not confirmed
+  bool good = false;         // the pose is
+  bool has_heading = false;  // the heading as well
+  Pose2 pose;                // floor frame
+  BaseGuess guess;           // from its shape
 };
 using SeenObjects = FixedVector<SeenObject, kMaxObjects>;
 

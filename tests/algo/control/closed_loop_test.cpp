@@ -38,7 +38,7 @@ WheelOdometry odometry(const WheelSpeeds& told, double dt_s) {
 SeenObject seen(int id, const Pose2& base, sim::Random& random) {
   SeenObject object;
   object.id = id;
-  object.good = true;
+  object.good = object.has_heading = true;
   object.pose = compose(base, inverse(kObjectBase));
   object.pose = {object.pose.x + 0.001 * random.normal(), object.pose.y + 0.001 * random.normal(),
                  object.pose.yaw + 0.006 * random.normal()};
@@ -186,6 +186,29 @@ TEST(ClosedLoop, AJumpOfThePoseIsNotFollowedAtOnce) {
   for (int i = 0; i < 30; ++i) tracker.update(odometry({}, kFrame_s), 0, 0, &wrong);
   CHECK(tracker.seen());  // it stays there: somebody carried the robot
   DOUBLES_EQUAL(before.x + 0.5, tracker.base().x, 0.01);
+}
+
+// What a tracker does on a round robot without a print: places are right, headings slide away.
+TEST(ClosedLoop, AHeadingThatSlidesIsLeftOut) {
+  const Obedience o = start(robot, random, 0, kNobodyElse);
+  BaseTracker tracker;
+  tracker.start(o, seen(1, robot.pose, random).pose);
+  const WheelSpeeds told = wheel_speeds(0.2, 0.4, kBase_m);
+  double slide = 0, worst_m = 0, worst_rad = 0;
+  for (int i = 0; i < 400; ++i) {
+    robot.roll(told, kFrame_s);
+    if (i > 150 && i < 200) slide += 0.05;
+    if (i == 250) slide = 0;
+    SeenObject object = seen(1, robot.pose, random);
+    object.pose.yaw += slide;
+    tracker.update(odometry(told, kFrame_s), 0, 0, &object);
+    CHECK(tracker.seen());
+    const Pose2 at = tracker.base();
+    worst_m = std::max(worst_m, std::hypot(at.x - robot.pose.x, at.y - robot.pose.y));
+    worst_rad = std::max(worst_rad, std::fabs(wrap_angle(at.yaw - robot.pose.yaw)));
+  }
+  CHECK(worst_m < 0.015);
+  CHECK(worst_rad < 0.12);
 }
 
 TEST(ClosedLoop, AnOpenLoopKnowsAfterwardsWhoWentAlong) {
