@@ -93,8 +93,14 @@ WheelSpeeds RobotDriver::next_speeds(double now_s, const DriverView& view, doubl
   return {};
 }
 
+// A command holds until the next frame: for as long, it is to be expected, as the one before. Were it taken
+// for shorter when frames are late, each command would overshoot by what the one before did, and more.
+WheelSpeeds RobotDriver::dead_reckoned(double passed_s) {
+  return open_->step(passed_s, passed_s > kFrame_s ? passed_s : kFrame_s);
+}
+
 WheelSpeeds RobotDriver::start_motion_speeds(double now_s, const DriverView& view, double passed_s) {
-  if (!open_->done()) return open_->step(passed_s, kFrame_s);
+  if (!open_->done()) return dead_reckoned(passed_s);
   picked_ = witness_.judge();
   if (const SeenObject* robot = robot_in(view.objects); robot != nullptr && robot->good) {
     base_.start(picked_, robot->pose);
@@ -112,7 +118,7 @@ WheelSpeeds RobotDriver::start_motion_speeds(double now_s, const DriverView& vie
 }
 
 WheelSpeeds RobotDriver::path_speeds(double passed_s) {
-  if (open_) return open_->step(passed_s, kFrame_s);
+  if (open_) return dead_reckoned(passed_s);
   return closed_->step(compose(inverse(T_floor_path_), base_now_), passed_s);
 }
 

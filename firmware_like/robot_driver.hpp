@@ -75,6 +75,7 @@ class RobotDriver {
   void watch(const DriverView& view, double passed_s);
   WheelSpeeds next_speeds(double now_s, const DriverView& view, double passed_s);
   WheelSpeeds start_motion_speeds(double now_s, const DriverView& view, double passed_s);
+  WheelSpeeds dead_reckoned(double passed_s);
   WheelSpeeds path_speeds(double passed_s);
   WheelSpeeds client_speeds(double now_s);
   void enter(Phase phase, double now_s);

@@ -142,6 +142,25 @@ TEST(SafetySupervisor, TheDriverStandsForAsLongAsItIsHeldAndGoesOnWithItsPath) {
   CHECK(driver.fault() == RobotFault::kCliff);
 }
 
+// A loop that is starved has frames a fifth of a second apart: the wheels must not be thrown to and fro.
+TEST(SafetySupervisor, LateFramesDoNotMakeTheDriverOvershoot) {
+  FakeBase base;
+  Path path;
+  path.add_line(0.5);
+  path.plan();
+  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kEnd);
+  DriverView view;
+  view.sight = {true, true, 0.1};
+  double way_m = 0;
+  for (double t = 0; t < 12; t += 0.19) {
+    driver.decide(t, view);
+    driver.send();
+    CHECK(base.left > -0.03 && base.left < 0.26);
+    way_m += 0.19 * base.left;
+  }
+  DOUBLES_EQUAL(0.5, way_m, 0.01);
+}
+
 TEST(SafetySupervisor, TheTableCanBeRead) {
   for (const SafetyRow& row : safety_rules()) {
     CHECK(row.name[0] != 0 && row.trigger[0] != 0 && row.limit[0] != 0 && row.what_to_do[0] != 0);
