@@ -40,6 +40,21 @@ void add_model_error(const Vec3& up, double distance_m, double (&covariance)[36]
 
 }  // namespace
 
+void ObjectTracker::see(SeenObjects& objects) const {
+  for (const Track& track : tracks_) {
+    if (track.id == 0 || !has_floor_frame_) continue;
+    const Pose T = T_floor_camera_ * track.T_camera_object;
+    const Vec3 middle = track.bounds.empty() ? Vec3{} : track.bounds.centre();
+    SeenObject object;
+    object.id = track.id;
+    object.good = track.phase == Track::Phase::kTracked && track.state == TrackState::kGood;
+    object.has_heading = track.yaw_source != YawSource::kNone;
+    object.pose = {T.t.x, T.t.y, to_roll_pitch_yaw(T.R).z};
+    object.guess = {middle.x, middle.y, 0.05};
+    objects.push_back(object);
+  }
+}
+
 ObjectSample ObjectTracker::sample_of(Track& track) const {
   ObjectSample s;
   s.id = track.id;

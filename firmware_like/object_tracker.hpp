@@ -2,6 +2,7 @@
 // one stage of the loop; they run in the order in which they stand here. All memory is bound once.
 #pragma once
 
+#include "algo/control/start_motion.hpp"
 #include "algo/core/bump.hpp"
 #include "algo/segmentation/segmenter.hpp"
 #include "algo/tracking/associate.hpp"
@@ -52,6 +53,7 @@ class ObjectTracker {
   void judge_all();
   void integrate_all(const LadderStep& step);
   void decide_lives(const LadderStep& step);  // confirm, lose, find again, begin, evict
+  void see(SeenObjects& objects) const;       // the confirmed ones, for whoever steers by them
   void publish(FrameReport& report);
 
   // For the end of a run.
@@ -113,6 +115,7 @@ class ObjectTracker {
   void refuse(const Rect& box, std::size_t k);
   void fill_rest(const Rect& box);
   void drop_fragments(const Rect& box);
+  bool in_arena(const Vec3& p_camera) const;
   void begin_released();
   bool is_looked_for_in(const Unexplained& what) const;
   void begin_tracks();
