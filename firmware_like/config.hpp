@@ -19,7 +19,7 @@ struct LoopConfig {
   // No track starts outside; empty: anywhere. On the floor, from the point below the camera: x along its axis
   // laid on the floor, y to the left.
   FixedVector<PlanePoint, 16> arena;
-  bool use_contour = true, use_color = true, use_floor = true, use_motion = true;
+  bool use_contour = true, use_color = true, use_floor = true, use_motion = true, use_wheels = true;
   double camera_lag_s = 0;  // the camera's delay beyond that of the wheels' reports (calibrated)
   double seconds = 0;       // stop after so much recorded (or live) time; 0: at the end
 };

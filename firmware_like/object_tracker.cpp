@@ -118,10 +118,13 @@ void ObjectTracker::update_support() {
 }
 
 void ObjectTracker::predict() {
-  for (Track& track : tracks_)
-    if (track.active())
-      track.motion.predict(frame_.input->device_t_s,
-                           track.drive.recognised() ? kDrivingNoise : MotionNoise{});
+  for (Track& track : tracks_) {
+    if (!track.active()) continue;
+    const MotionNoise noise = ask_wheels(track)          ? kWheeledNoise
+                              : track.drive.recognised() ? kDrivingNoise
+                                                         : MotionNoise{};
+    track.motion.predict(frame_.input->device_t_s, noise);
+  }
 }
 
 void ObjectTracker::render_one(Track& track, const Pose& T) {
@@ -310,6 +313,8 @@ void ObjectTracker::judge_one(Track& track) {
     return;
   }
   if (!track.planar) return_to_floor(track);
+  track.yaw_source = yaw_source_of(track.aligned, support_.up);
+  judge_wheels(track);
   if (track.aligned.color.used > 0)
     track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance, track.aligned.color_rest,
                          frame_.color_lag_s);
@@ -323,13 +328,13 @@ void ObjectTracker::judge_one(Track& track) {
   track.T_last_good = track.T_camera_object;
   if (track.planar && support_.found)
     track.drive.add(frame_.input->device_t_s, support_.on_floor(track.T_camera_object), track.heading_doubt);
-  track.yaw_source = yaw_source_of(track.aligned, support_.up);
   track.has_moved = track.has_moved || moved_since_birth(track);
 }
 
 void ObjectTracker::judge_all() {
   for (Track& track : tracks_)
     if (track.active()) judge_one(track);
+  match_wheels();
 }
 
 void ObjectTracker::integrate_all(const LadderStep& step) {

@@ -11,6 +11,7 @@
 #include "algo/tracking/make_room.hpp"
 #include "algo/tracking/recover.hpp"
 #include "algo/tracking/track.hpp"
+#include "algo/tracking/way_match.hpp"
 #include "algo/volume/integrate.hpp"
 #include "firmware_like/config.hpp"
 #include "firmware_like/degradation.hpp"
@@ -78,6 +79,9 @@ class ObjectTracker {
   void bind_integration(Bump& memory);
 
   void update_support();
+  bool ask_wheels(Track& track);
+  void judge_wheels(Track& track);
+  void match_wheels();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
   void judge_one(Track& track);
   void expect_heading(Track& track, AlignInput& in) const;
@@ -137,6 +141,8 @@ class ObjectTracker {
   Frame frame_;
   Segmenter segmenter_;
   const Segmentation* segmentation_ = nullptr;
+  WayMatch went_along_;  // with the wheels of the robot, if one is connected
+  int wheeled_id_ = 0;   // the object that does; 0: none
   ColorRegistration registration_;
   Support support_;
   bool support_frozen_ = false;

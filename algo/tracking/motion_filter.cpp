@@ -46,6 +46,12 @@ void MotionFilter::set_turn_rate(double rate_rps) {
   output_.angular_velocity_rps.z = rate_rps;
 }
 
+void MotionFilter::turns_at(double rate_rps, double sigma_rps) {
+  axis_[5].rate = rate_rps;
+  axis_[5].pr = 0;
+  axis_[5].rr = sigma_rps * sigma_rps;
+}
+
 Pose MotionFilter::motion_over(double dt_s) const {
   const Mat3 R_camera_reference = R_reference_camera_.transposed();
   const Mat3 dR = rotation_from_vector(R_camera_reference * (angular_velocity_rps() * dt_s));

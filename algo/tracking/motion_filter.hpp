@@ -15,6 +15,8 @@ struct MotionNoise {
   double turn_acceleration_rps2 = 5.0;
 };
 inline constexpr MotionNoise kDrivingNoise{0.7, 5.0};
+// The same while the wheels tell the turn, which is then no matter of acceleration.
+inline constexpr MotionNoise kWheeledNoise{0.7, 0.3};
 
 // Smoothed rates for publishing, reference axes. First-order low-pass filters: velocity lags by 67 ms,
 // acceleration by 200 ms more at 30 frames a second.
@@ -37,6 +39,9 @@ class MotionFilter {
   void turn(const Mat3& by);
   // How fast it turns about the reference's z axis was wrong as well.
   void set_turn_rate(double rate_rps);
+
+  // How fast it turns about the reference's z axis until the next prediction's time, told by its wheels.
+  void turns_at(double rate_rps, double sigma_rps);
 
   // Moves the estimate on to time t_s.
   void predict(double t_s, const MotionNoise& noise);

@@ -7,6 +7,7 @@
 #include "algo/tracking/judge.hpp"
 #include "algo/tracking/model_view.hpp"
 #include "algo/tracking/motion_filter.hpp"
+#include "algo/tracking/wheel_witness.hpp"
 #include "algo/volume/volume.hpp"
 
 namespace st {
@@ -69,6 +70,8 @@ struct Track {
   DriveModel drive;
   ExpectedHeading heading;     // in this frame, from its motion
   bool heading_doubt = false;  // what it looks like contradicts that
+  WheelWitness wheels;         // whether the robot's wheels may tell its turn
+  bool asked_wheels = false;   // and whether they did in this frame
   Pose T_camera_object;        // newest estimate, whatever its state
   Pose T_last_good;
   TrackState state = TrackState::kLost;

@@ -18,7 +18,8 @@ struct Term {
 constexpr Term kTerms[] = {{"edges", &LoopConfig::use_contour},
                            {"colour", &LoopConfig::use_color},
                            {"floor", &LoopConfig::use_floor},
-                           {"motion", &LoopConfig::use_motion}};
+                           {"motion", &LoopConfig::use_motion},
+                           {"odometry", &LoopConfig::use_wheels}};
 
 void leave_out(LoopConfig& config, const std::string& name) {
   for (const Term& term : kTerms) {
@@ -27,7 +28,7 @@ void leave_out(LoopConfig& config, const std::string& name) {
     return;
   }
   throw Failure(ExitCode::kBadInput,
-                "--without " + name + ": no such term; there are edges, colour, floor, motion");
+                "--without " + name + ": no such term; there are edges, colour, floor, motion, odometry");
 }
 
 // "x1,y1;x2,y2;..."
@@ -91,8 +92,8 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
           },
           "leave pose terms out: edges (outline and free space), colour (the model's print), floor (height "
           "and "
-          "upright of what rests on it), motion (the predicted pose as a prior); all four leave projective "
-          "ICP alone")
+          "upright of what rests on it), motion (the predicted pose as a prior), odometry (the turn that the "
+          "wheels tell); all of them leave projective ICP alone")
       ->delimiter(',')
       ->type_name("TERM[,TERM]");
   command
