@@ -197,6 +197,7 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
   }
   expect_heading(track, in);
   track.aligned = align(in, scratch_);
+  if (step.point_stride == 1) look_beside(track, in, k);
   defend_heading(track, in);
   if (in.floor.on && step.point_stride == 1) leave_floor(track, in);
 }

@@ -85,6 +85,7 @@ class ObjectTracker {
   void align_one(Track& track, std::size_t k, const LadderStep& step);
   void judge_one(Track& track);
   void expect_heading(Track& track, AlignInput& in) const;
+  void look_beside(Track& track, const AlignInput& in, std::size_t k);
   void defend_heading(Track& track, const AlignInput& in);
   void leave_floor(Track& track, const AlignInput& held);
   void return_to_floor(Track& track);
