@@ -139,6 +139,8 @@ void Loop::publish() {
   parts_.budget.count(report_);
   if (parts_.source.info().live) degradation_.next(report_.cpu_us);
   parts_.telemetry.offer(report_);
+  if (parts_.recorder != nullptr)
+    parts_.recorder->add(input_, level_, parts_.driver != nullptr ? parts_.driver->status().log_bytes : 0);
   if (parts_.server == nullptr) return;
   served_.report = report_;
   if (parts_.driver != nullptr) served_.robot = parts_.driver->served();

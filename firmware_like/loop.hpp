@@ -10,6 +10,7 @@
 #include "firmware_like/robot_driver.hpp"
 #include "firmware_like/stage_clock.hpp"
 #include "hal/clock.hpp"
+#include "hal/recording/recorder.hpp"
 #include "hal/results/result_writer.hpp"
 #include "hal/results/telemetry.hpp"
 #include "hal/serve/pose_server.hpp"
@@ -17,7 +18,8 @@
 
 namespace st {
 
-// What the loop works with; all outlive it. Without a robot `driver` is null, without clients `server`.
+// What the loop works with; all outlive it. Without a robot `driver` is null, without clients `server`, when
+// nothing is recorded `recorder`.
 struct LoopParts {
   FrameSource& source;
   ObjectTracker& tracker;
@@ -27,6 +29,7 @@ struct LoopParts {
   const ResultWriter& results;  // a disk that is full ends the run
   RobotDriver* driver;
   PoseServer* server;
+  Recorder* recorder;
 };
 
 // Why run() came back.

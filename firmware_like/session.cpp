@@ -75,6 +75,15 @@ LoopEnd run_loop(Loop& loop, bool live, RunEnd& end) {
   return why;
 }
 
+void finish_recording(Recorder& recorder, SessionResult& result) {
+  recorder.close();
+  if (recorder.dropped() > 0)
+    std::fprintf(stderr,
+                 "startrack: warning: %llu frames were not recorded, since the disk did not keep up\n",
+                 static_cast<unsigned long long>(recorder.dropped()));
+  result.trouble = recorder.failure();
+}
+
 }  // namespace
 
 SessionResult run_session(const SessionOptions& options) {
@@ -83,8 +92,13 @@ SessionResult run_session(const SessionOptions& options) {
   std::optional<Path> path;
   if (!options.path_file.empty()) path = load_path(options.path_file);
   // The robot first: its guard is a child process, and children are made before the arena is.
+  RobotOptions robot_options = options.robot;
+  if (!options.record.empty()) {
+    make_recording_folder(options.record);
+    robot_options.log_path = options.record + "/robot.log";
+  }
   std::unique_ptr<DriveBase> robot;
-  if (!options.robot.port.empty()) robot = open_robot(options.robot);
+  if (!options.robot.port.empty()) robot = open_robot(robot_options);
   if (robot && !is_simulated(options.robot.port) && !arm_at_terminal()) {
     robot->close();
     return {ExitCode::kInterrupted, {}, "not armed; nothing was driven"};
@@ -117,6 +131,8 @@ SessionResult run_session(const SessionOptions& options) {
   if (isatty(STDERR_FILENO) != 0) sinks.push_back(&progress.emplace(info.expected_frames));
   Telemetry telemetry(ring, sinks);
   telemetry.start();
+  std::optional<Recorder> recorder;
+  if (!options.record.empty()) recorder.emplace(RecorderOptions{options.record, info.calibration});
   std::optional<PoseServer> server;
   if (!options.serve.empty()) server.emplace(options.serve, robot && !path);
   std::optional<RobotDriver> driver;
@@ -124,7 +140,7 @@ SessionResult run_session(const SessionOptions& options) {
     driver.emplace(*robot, steering_of(options), path ? &*path : nullptr,
                    server ? &server->commands() : nullptr, options.on_bump);
   Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr,
-             server ? &*server : nullptr},
+             server ? &*server : nullptr, recorder ? &*recorder : nullptr},
             options.loop);
   source->start();
   if (server) {
@@ -138,6 +154,7 @@ SessionResult run_session(const SessionOptions& options) {
   if (robot) robot->close();
   source->stop();
   if (server) server->stop();
+  if (recorder) finish_recording(*recorder, result);
   telemetry.stop();
   progress.reset();
 

@@ -20,7 +20,8 @@ struct SessionOptions {
   std::string serve;  // [HOST:]PORT for clients; empty: none
   LoopConfig loop;
   std::string tracker_name = "star";
-  std::string out;  // run folder; empty: runs/DATE-TIME-SOURCE
+  std::string record;  // folder for a recording of what the run saw; empty: none
+  std::string out;     // run folder; empty: runs/DATE-TIME-SOURCE
   bool force = false;
   std::string simd;  // empty: the best that this CPU has
 };

@@ -120,8 +120,13 @@ bool CreateRobot::lost_contact() const {
 }
 
 void CreateRobot::poll(FixedVector<OdometrySample, 64>& odometry, RobotStatus& status) {
-  OdometrySample sample;
-  while (!odometry.full() && travel_.pop(sample)) odometry.push_back(sample);
+  // Up to a place in the log, so that a replay gives each frame the same travel.
+  status.log_bytes = log_bytes_.load();
+  while (!odometry.full() && (has_early_ || travel_.pop(early_))) {
+    has_early_ = early_.log_bytes > status.log_bytes;
+    if (has_early_) break;
+    odometry.push_back(early_.sample);
+  }
   const std::int64_t now_ns = system_clock().monotonic_ns();
   status.fault = worst_fault();
   status.last_heard_s = static_cast<double>(now_ns - heard_ns_.load()) * 1e-9;
@@ -213,7 +218,10 @@ void CreateRobot::on_message(std::span<const std::uint8_t> message) {
   if (message[0] != kGuardReceived) return;
   stream_.receive(
       t_s, bytes, [this](const SensorState& state) { on_frame(state); },
-      [this](const OdometrySample& sample) { travel_.push(sample); });
+      [this](const OdometrySample& sample) {
+        travel_.push({sample, log_->bytes()});
+      });
+  log_bytes_.store(log_->bytes());
   bad_bytes_.store(stream_.parser().bad_bytes());
 }
 

@@ -57,8 +57,13 @@ class CreateRobot final : public DriveBase {
   std::thread reader_;
 
   // Written by the reader, read by the loop.
-  SpscRing<OdometrySample, 256> travel_;
-  std::atomic<std::uint32_t> noted_{0};  // bit per RobotFault, since the last poll()
+  struct Travel {
+    OdometrySample sample;
+    std::uint64_t log_bytes = 0;  // of robot.log, with the line that told of it
+  };
+  SpscRing<Travel, 256> travel_;
+  std::atomic<std::uint64_t> log_bytes_{0};  // all of their travel is in the ring
+  std::atomic<std::uint32_t> noted_{0};      // bit per RobotFault, since the last poll()
   std::atomic<bool> disconnected_{false};
   std::atomic<std::int64_t> heard_ns_{0};  // newest good frame
   std::atomic<std::int64_t> listened_in_vain_ns_{0};
@@ -67,6 +72,10 @@ class CreateRobot final : public DriveBase {
   std::atomic<bool> in_control_{false}, closing_{false};
   std::atomic<bool> standstill_{true};  // contact was lost: nothing moves before stop() was called
   std::atomic<int> reconnects_{0};
+
+  // The loop's own: taken from the ring too early for what the log is known to hold.
+  Travel early_;
+  bool has_early_ = false;
 
   // The reader's own.
   OdometryStream stream_;

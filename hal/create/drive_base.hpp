@@ -41,7 +41,8 @@ struct RobotStatus {
   std::uint64_t good_frames = 0, bad_bytes = 0;
   int oi_mode = 0;  // 0 off, 1 passive, 2 safe, 3 full
   int battery_mv = 0;
-  int reconnects = 0;  // how often the port came back
+  int reconnects = 0;           // how often the port came back
+  std::uint64_t log_bytes = 0;  // of robot.log, that the odometry up to now was read from
 };
 
 class DriveBase {

@@ -49,7 +49,7 @@ void RobotLogWriter::write_line(const std::string& line) {
   if (fd_ < 0) return;
   // A full disk must not stop the robot's reader; the recording's own writer reports it.
   const ssize_t written = write(fd_, line.data(), line.size());
-  static_cast<void>(written);
+  if (written > 0) bytes_ += static_cast<std::uint64_t>(written);
 }
 
 }  // namespace st

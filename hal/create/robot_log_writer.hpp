@@ -21,12 +21,14 @@ class RobotLogWriter {
   RobotLogWriter& operator=(const RobotLogWriter&) = delete;
 
   void set_robot(RobotModel model, const RobotGeometry& wheels);
+  std::uint64_t bytes() const { return bytes_; }  // written until now
   void add(double t_s, bool from_robot, std::span<const std::uint8_t> bytes);
 
  private:
   void write_line(const std::string& line);
 
   int fd_ = -1;
+  std::uint64_t bytes_ = 0;
   bool model_known_ = false;
   std::string kept_back_;
 };

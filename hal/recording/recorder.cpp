@@ -46,17 +46,22 @@ std::string pnm_header(const char* magic, const Intrinsics& camera, const char* 
          max_value + "\n";
 }
 
-void require_empty_folder(const std::string& folder) {
+void require_folder(const std::string& folder, const char* but_for) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!fs::is_directory(folder))
     throw Failure(ExitCode::kBadInput,
                   folder + ": cannot be made (" + error.message() + "); give another folder");
-  if (!fs::is_empty(folder, error) || error)
+  bool empty = true;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    empty = empty && entry.path().filename() == but_for;
+  if (!empty || error)
     throw Failure(ExitCode::kBadInput, folder + ": is not empty; give a new folder for the recording");
 }
 
 }  // namespace
+
+void make_recording_folder(const std::string& folder) { require_folder(folder, ""); }
 
 Recorder::Recorder(const RecorderOptions& options)
     : folder_(options.folder),
@@ -68,7 +73,7 @@ Recorder::Recorder(const RecorderOptions& options)
         ExitCode::kBadInput,
         folder_ +
             ": only 11-bit Kinect depth can be recorded; SRC delivers depth in PNG units: copy its folder");
-  require_empty_folder(folder_);
+  require_folder(folder_, "robot.log");
   const auto area = [](const Intrinsics& c) {
     return static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height);
   };

@@ -15,10 +15,14 @@
 namespace st {
 
 struct RecorderOptions {
-  std::string folder;       // made when missing; must be empty
+  std::string folder;       // made when missing; must be empty but for a robot.log
   Calibration calibration;  // must be a Kinect's: 11-bit depth
   unsigned queue_frames = 16;
 };
+
+// The folder of a recording to come: made, and empty. For what writes into it before the recorder is there
+// (robot.log). Throws Failure (kBadInput).
+void make_recording_folder(const std::string& folder);
 
 class Recorder {
  public:

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "hal/create/drive_base.hpp"
 #include "hal/error.hpp"
 #include "hal/recording/recorder.hpp"
 #include "hal/source/frame_source.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct RecordArguments {
   std::string folder;
   SourceOptions source;
+  RobotOptions robot;  // port empty: none
   double seconds = 0;  // 0: until stopped
 };
 
@@ -43,7 +45,16 @@ class Progress {
 };
 
 int record(const RecordArguments& arguments) {
-  const std::unique_ptr<FrameSource> source = open_source(arguments.source);
+  make_recording_folder(arguments.folder);
+  SourceOptions source_options = arguments.source;
+  std::unique_ptr<DriveBase> robot;
+  if (!arguments.robot.port.empty()) {
+    RobotOptions robot_options = arguments.robot;
+    robot_options.log_path = arguments.folder + "/robot.log";
+    robot = open_robot(robot_options);
+    source_options.robot_state_path = robot->sim_state_path();
+  }
+  const std::unique_ptr<FrameSource> source = open_source(source_options);
   const SourceInfo& info = source->info();
   if (!info.calibration_note.empty())
     std::fprintf(stderr, "startrack record: %s\n", info.calibration_note.c_str());
@@ -55,6 +66,7 @@ int record(const RecordArguments& arguments) {
   source->start();
   Progress progress;
   FrameInput frame;
+  RobotStatus status;
   double first_t_s = 0;
   auto result = FrameSource::Result::kTimeout;
   while (stop_signal() == 0 && recorder.failure().empty()) {
@@ -66,10 +78,12 @@ int record(const RecordArguments& arguments) {
     // A source that waits for us can wait for the disk as well: frames are dropped live only.
     while (!info.live && stop_signal() == 0 && recorder.failure().empty() && !recorder.wait_for_room(100)) {
     }
-    recorder.add(frame, 0, 0);
+    if (robot) robot->poll(frame.odometry, status);
+    recorder.add(frame, 0, status.log_bytes);
     progress.add(frame, recorder);
   }
   source->stop();
+  if (robot) robot->close();
   recorder.close();
   progress.end(recorder);
   if (!recorder.failure().empty()) throw Failure(ExitCode::kBadInput, recorder.failure());
@@ -89,6 +103,12 @@ void add_record(CLI::App& app, int& exit_code) {
   command
       ->add_option("--source", arguments->source.spec, "kinect[:INDEX or SERIAL], sim:SCENE or a recording")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--robot", arguments->robot.port,
+          "also record what this robot says and is told; it stands: a serial device, tcp:HOST:PORT or "
+          "sim")
+      ->type_name("PORT");
   command->add_option("--camera", arguments->source.camera_file,
                       "camera.toml with the calibration of this camera");
   command->add_option("--seconds", arguments->seconds, "stop after so many seconds (0: until Ctrl-C)")

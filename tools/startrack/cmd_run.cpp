@@ -40,6 +40,10 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"open", "closed"}))
       ->default_str("open");
   command
+      ->add_option("--record", options->record,
+                   "new folder for a recording of the run: the camera's frames and the robot's bytes")
+      ->type_name("DIR");
+  command
       ->add_option("--serve", options->serve,
                    "poses as JSON lines for programs that connect here, and with --robot but without --path "
                    "they drive it; without HOST for this computer only, port 0: any that is free")
