@@ -50,7 +50,8 @@ CreateRobot::CreateRobot(std::unique_ptr<RobotPort> port, const RobotIdentity& i
                          std::unique_ptr<SimChild> sim)
     : identity_(identity),
       geometry_(wheels),
-      wheel_scale_(wheel_scale(oi::default_geometry(identity.model), wheels)),
+      left_scale_(wheel_scale(oi::default_geometry(identity.model), wheels) * wheel_shares(wheels).left),
+      right_scale_(wheel_scale(oi::default_geometry(identity.model), wheels) * wheel_shares(wheels).right),
       port_(port->address()),
       log_(std::move(log)),
       sim_(std::move(sim)),
@@ -98,14 +99,13 @@ bool CreateRobot::send(const oi::Command& command) {
 bool CreateRobot::drive(double left_mps, double right_mps) {
   const bool sane = std::isfinite(left_mps) && std::isfinite(right_mps);
   const bool still = !sane || standstill_.load();
-  const double mmps_per_mps = 1000.0 / wheel_scale_;  // as the robot counts them
-  const double fastest = still ? 0.0 : std::max(std::fabs(left_mps), std::fabs(right_mps)) * mmps_per_mps;
-  // Both wheels give way alike, so that the curve stays the same.
-  const double scale = still                          ? 0.0
-                       : fastest > oi::kMaxWheel_mmps ? mmps_per_mps * oi::kMaxWheel_mmps / fastest
-                                                      : mmps_per_mps;
-  const auto mmps = [&](double mps) { return sane ? static_cast<int>(std::lround(mps * scale)) : 0; };
-  return send(oi::drive_direct(mmps(left_mps), mmps(right_mps))) && sane && !disconnected_.load();
+  // As the robot counts them. Both wheels give way alike, so that the curve stays the same.
+  const double left = still ? 0 : 1000 * left_mps / left_scale_,
+               right = still ? 0 : 1000 * right_mps / right_scale_;
+  const double fastest = std::max(std::fabs(left), std::fabs(right));
+  const double scale = fastest > oi::kMaxWheel_mmps ? oi::kMaxWheel_mmps / fastest : 1.0;
+  const auto mmps = [&](double speed) { return static_cast<int>(std::lround(speed * scale)); };
+  return send(oi::drive_direct(mmps(left), mmps(right))) && sane && !disconnected_.load();
 }
 
 // What is asked for after this is meant for the robot as it is now: a standstill is over once the robot is

@@ -49,7 +49,7 @@ class CreateRobot final : public DriveBase {
 
   RobotIdentity identity_;
   RobotGeometry geometry_;
-  double wheel_scale_;
+  double left_scale_, right_scale_;  // how far a wheel rolls when it is asked to roll a metre
   PortAddress port_;
   std::unique_ptr<RobotLogWriter> log_;
   std::unique_ptr<SimChild> sim_;

@@ -17,6 +17,7 @@ struct RobotGeometry {
   double wheel_base_m = 0.235;
   double wheel_diameter_m = 0.072;
   double counts_per_turn = 508.8;
+  double right_to_left = 1;  // the right wheel's diameter beside the left one's; the two have that mean
 };
 
 // What keeps the robot from driving on; safety_rules.hpp says what follows from each. The last two are not
@@ -76,7 +77,7 @@ struct RobotOptions {
   std::string port;
   std::optional<RobotModel> model;  // as told; else found out
   // Measured wheels; 0: as the model has them.
-  RobotGeometry wheels{0, 0, 0};
+  RobotGeometry wheels{0, 0, 0, 0};
   std::string log_path;    // robot.log: every byte both ways; empty: none
   std::uint64_t seed = 1;  // for `sim`: wheel slip
 };

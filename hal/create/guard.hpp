@@ -6,6 +6,9 @@
 // thing that the robot then hears is stop; for a while even when the program has ended meanwhile, since it is
 // then that a robot may be driving on with nobody to stop it.
 //
+// Commands by which the robot would drive on its own (cleaning, demos, docking) or stop listening (waits,
+// scripts) do not pass: no stop would be heard.
+//
 // The program and the guard speak over one socket that keeps messages whole. To the guard: one Open Interface
 // command per message; those that drive are the heartbeats. From the guard: a byte that says which way, then
 // the bytes.

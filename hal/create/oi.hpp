@@ -74,6 +74,14 @@ constexpr bool drives(std::uint8_t opcode) {
   return opcode == kDrive || opcode == kDriveDirect || opcode == kDrivePwm;
 }
 
+// After these the robot goes where it likes or hears no stop: Spot, Clean or Cover, Demo or Max, Dock,
+// scripts and waits, and on a Create 2 its own buttons and schedule.
+constexpr bool hears_no_stop_after(std::uint8_t opcode) {
+  return opcode == kSpot || opcode == kCover || opcode == kDemo || opcode == kSeekDock || opcode == kScript ||
+         opcode == kPlayScript || (opcode >= kWaitTime && opcode <= kWaitEvent) || opcode == kButtons ||
+         opcode == kSchedule;
+}
+
 // One whole command.
 struct Command {
   static constexpr std::size_t kCapacity = 128;

@@ -14,6 +14,7 @@ std::unique_ptr<DriveBase> open_robot(const RobotOptions& options) {
   RobotGeometry wheels = oi::default_geometry(identity.model);
   if (options.wheels.wheel_base_m > 0) wheels.wheel_base_m = options.wheels.wheel_base_m;
   if (options.wheels.wheel_diameter_m > 0) wheels.wheel_diameter_m = options.wheels.wheel_diameter_m;
+  if (options.wheels.right_to_left > 0) wheels.right_to_left = options.wheels.right_to_left;
   if (options.wheels.counts_per_turn > 0) wheels.counts_per_turn = options.wheels.counts_per_turn;
   auto robot =
       std::make_unique<CreateRobot>(std::move(port), identity, wheels, std::move(log), std::move(sim));

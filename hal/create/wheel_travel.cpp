@@ -29,6 +29,11 @@ double wheel_scale(const RobotGeometry& believed, const RobotGeometry& actual) {
   return metres_per_count(actual) / metres_per_count(believed);
 }
 
+WheelShares wheel_shares(const RobotGeometry& geometry) {
+  const double left = 2 / (1 + geometry.right_to_left);
+  return {left, left * geometry.right_to_left};
+}
+
 bool WheelTravel::update(double t_s, const SensorState& state, bool after_loss, OdometrySample& sample) {
   if (state.has(oi::kEncoderLeft) && state.has(oi::kEncoderRight)) return from_encoders(t_s, state, sample);
   if (state.has(oi::kRequestedLeft) && state.has(oi::kRequestedRight))
@@ -63,7 +68,8 @@ bool WheelTravel::from_encoders(double t_s, const SensorState& state, OdometrySa
   left_ = static_cast<std::uint16_t>(left);
   right_ = static_cast<std::uint16_t>(right);
   last_t_s_ = t_s;
-  sample = {t_s, d_left * m_per_count, d_right * m_per_count};
+  const WheelShares share = wheel_shares(geometry_);
+  sample = {t_s, share.left * d_left * m_per_count, share.right * d_right * m_per_count};
   return report;
 }
 
@@ -77,9 +83,12 @@ bool WheelTravel::from_requests(double t_s, const SensorState& state, bool after
   predicted_rad_ += (right_m - left_m) / believed_.wheel_base_m;
   if (state.has(oi::kDistance) && state.has(oi::kAngle)) {
     if (comparable_) {
-      const double along_m = beyond_rounding(state.value(oi::kDistance) * 1e-3 - predicted_m_, 1e-3);
+      // The robot read its sums somewhere in the slot, not where ours was cut.
+      const double slot_m = std::fabs(0.5 * (left_m + right_m)),
+                   slot_rad = std::fabs(right_m - left_m) / believed_.wheel_base_m;
+      const double along_m = beyond_rounding(state.value(oi::kDistance) * 1e-3 - predicted_m_, 1e-3 + slot_m);
       const double turn_rad =
-          beyond_rounding(state.value(oi::kAngle) * kPi / 180 - predicted_rad_, kPi / 180);
+          beyond_rounding(state.value(oi::kAngle) * kPi / 180 - predicted_rad_, kPi / 180 + slot_rad);
       left_m += along_m - 0.5 * turn_rad * believed_.wheel_base_m;
       right_m += along_m + 0.5 * turn_rad * believed_.wheel_base_m;
     }
@@ -90,7 +99,8 @@ bool WheelTravel::from_requests(double t_s, const SensorState& state, bool after
   started_ = true;
   last_t_s_ = t_s;
   const double scale = wheel_scale(believed_, geometry_);
-  sample = {t_s, scale * left_m, scale * right_m};
+  const WheelShares share = wheel_shares(geometry_);
+  sample = {t_s, share.left * scale * left_m, share.right * scale * right_m};
   return report;
 }
 

@@ -17,6 +17,12 @@ namespace st {
 // How far a wheel truly rolls when the robot believes that it rolled a metre.
 double wheel_scale(const RobotGeometry& believed, const RobotGeometry& actual);
 
+// Of the mean wheel, how large each is.
+struct WheelShares {
+  double left = 1, right = 1;
+};
+WheelShares wheel_shares(const RobotGeometry& geometry);
+
 class WheelTravel {
  public:
   // `geometry`: as the wheels truly are. What the robot itself computes from its counts (requested speeds,

@@ -54,6 +54,10 @@ std::optional<RobotGeometry> parse_robot_log_wheels(std::string_view line) {
   if (take_word(rest) != "#" || take_word(rest) != "wheels") return std::nullopt;
   for (double* value : {&wheels.wheel_base_m, &wheels.wheel_diameter_m, &wheels.counts_per_turn})
     if (!parse_number(take_word(rest), *value) || !(*value > 0 && *value < 1e6)) return std::nullopt;
+  const std::string_view ratio = take_word(rest);
+  if (!ratio.empty() && (!parse_number(ratio, wheels.right_to_left) ||
+                         !(wheels.right_to_left > 0.5 && wheels.right_to_left < 2)))
+    return std::nullopt;
   return wheels;
 }
 
@@ -62,9 +66,9 @@ std::string robot_log_first_line(RobotModel model) {
 }
 
 std::string robot_log_wheels_line(const RobotGeometry& geometry) {
-  char line[80];
-  std::snprintf(line, sizeof line, "# wheels %.9g %.9g %.9g\n", geometry.wheel_base_m,
-                geometry.wheel_diameter_m, geometry.counts_per_turn);
+  char line[100];
+  std::snprintf(line, sizeof line, "# wheels %.9g %.9g %.9g %.9g\n", geometry.wheel_base_m,
+                geometry.wheel_diameter_m, geometry.counts_per_turn, geometry.right_to_left);
   return line;
 }
 

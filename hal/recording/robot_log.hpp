@@ -1,6 +1,6 @@
 // robot.log: every byte that went to and came from the robot. First line `# model create1|create2`; where the
-// robot's wheels were measured, `# wheels BASE_M DIAMETER_M COUNTS_PER_TURN`; then lines `host_seconds rx|tx
-// hex`.
+// robot's wheels were measured, `# wheels BASE_M DIAMETER_M COUNTS_PER_TURN [RIGHT_TO_LEFT]`; then lines
+// `host_seconds rx|tx hex`.
 #pragma once
 
 #include <cstdint>

@@ -214,7 +214,7 @@ void add_drive(CLI::App& app, int& exit_code) {
       "  startrack drive --rules        # when it stops, and why");
   command->add_option("--path", arguments->path, "path program: .toml, or .csv way points")
       ->type_name("FILE");
-  add_drive_options(*command, arguments->robot, arguments->on_bump);
+  add_drive_options(*command, arguments->robot, arguments->on_bump, nullptr);
   command->add_option("--model", arguments->robot.model, "create1 or create2; found out when left out")
       ->transform(robot_models())
       ->type_name("");

@@ -25,7 +25,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("SRC");
   auto on_bump = std::make_shared<std::string>("end");
-  add_drive_options(*command, options->robot, *on_bump);
+  add_drive_options(*command, options->robot, *on_bump, &options->loop.camera_lag_s);
   command
       ->add_option_function<std::uint64_t>(
           "--seed",

@@ -16,6 +16,7 @@ void add_report(CLI::App& app, int& exit_code);
 void add_create_sim(CLI::App& app, int& exit_code);
 void add_drive(CLI::App& app, int& exit_code);
 void add_robot(CLI::App& app, int& exit_code);
+void add_calibrate(CLI::App& app, int& exit_code);
 
 void add_replay(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);

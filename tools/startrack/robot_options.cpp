@@ -1,5 +1,7 @@
 #include "tools/startrack/robot_options.hpp"
 
+#include "hal/create/wheels_file.hpp"
+
 namespace st {
 
 CLI::Validator robot_models() {
@@ -12,13 +14,23 @@ CLI::Validator robot_models() {
   return {to_number, "create1|create2"};
 }
 
-void add_drive_options(CLI::App& command, RobotOptions& robot, std::string& on_bump) {
+void add_drive_options(CLI::App& command, RobotOptions& robot, std::string& on_bump, double* camera_lag_s) {
   command
       .add_option(
           "--robot", robot.port,
           "a serial device such as /dev/ttyUSB0, tcp:HOST:PORT, or sim[:SWITCH=VALUE,...] with switches of "
           "create-sim")
       ->type_name("PORT");
+  command
+      .add_option_function<std::string>(
+          "--wheels",
+          [&robot, camera_lag_s](const std::string& file) {
+            const MeasuredRobot measured = read_wheels_file(file);
+            robot.wheels = measured.wheels;
+            if (camera_lag_s != nullptr) *camera_lag_s = measured.camera_lag_s;
+          },
+          "what `startrack calibrate robot` measured of this robot")
+      ->type_name("FILE");
   command
       .add_option("--wheel-base", robot.wheels.wheel_base_m, "measured, in metres, instead of the model's")
       ->check(CLI::Range(0.1, 0.5));

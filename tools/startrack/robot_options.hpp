@@ -11,8 +11,9 @@ namespace st {
 // For an option that names a model: ->transform(robot_models())->type_name("").
 CLI::Validator robot_models();
 
-// --robot, the wheels' measured sizes, --on-bump.
-void add_drive_options(CLI::App& command, RobotOptions& robot, std::string& on_bump);
+// --robot, the wheels' measured sizes, --on-bump. `camera_lag_s`: where the lag of a --wheels FILE goes;
+// null: nowhere, since there is no camera.
+void add_drive_options(CLI::App& command, RobotOptions& robot, std::string& on_bump, double* camera_lag_s);
 Reaction reaction_on_bump(const std::string& word);
 
 }  // namespace st

@@ -140,6 +140,33 @@ TEST(Guard, LetsALivingProgramDrive) {
   UNSIGNED_LONGS_EQUAL(0, all.size() % 5);
 }
 
+// Drive, drive direct and drive PWM, each alone.
+TEST(Guard, EveryCommandThatDrivesIsAHeartbeat) {
+  oi::Command pwm;
+  for (const int byte : {146, 0, 50, 0, 50}) pwm.add(byte);
+  for (const oi::Command& command : {oi::drive(100, oi::kStraight, 0.235), oi::drive_direct(90, 90), pwm}) {
+    drain(master, 20);
+    int stops = 0;
+    for (int i = 0; i < 30; ++i) {
+      say(command);
+      const Bytes passed = drain(master, 15);
+      stops += passed.size() >= 5 && Bytes(passed.begin(), passed.begin() + 5) == kStop;
+    }
+    CHECK(stops <= 2);  // as above
+  }
+}
+
+TEST(Guard, LetsNothingPassAfterWhichNoStopIsHeard) {
+  drain(master, 20);
+  for (const int opcode : {134, 135, 136, 143, 152, 153, 155, 156, 157, 158, 165, 167}) {
+    oi::Command command;
+    command.add(opcode);
+    say(command);
+  }
+  say(oi::sensors(35));
+  CHECK(drain(master, 50) == (Bytes{142, 35}));
+}
+
 TEST(Guard, StopsAndSaysFarewellWhenTheProgramGoes) {
   close(guard.link);
   guard.link = -1;
