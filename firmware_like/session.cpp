@@ -109,6 +109,8 @@ SessionResult run_session(const SessionOptions& options) {
   if (robot) source_options.robot_state_path = robot->sim_state_path();
   const std::unique_ptr<FrameSource> source = open_source(source_options);
   const SourceInfo& info = source->info();
+  std::optional<PoseServer> server;
+  if (!options.serve.empty()) server.emplace(options.serve, robot && !path);
   SessionResult result;
   result.folder = prepare_run_folder(options.out, info.short_name, options.force);
   if (!info.calibration_note.empty()) std::fprintf(stderr, "startrack: %s\n", info.calibration_note.c_str());
@@ -133,8 +135,6 @@ SessionResult run_session(const SessionOptions& options) {
   telemetry.start();
   std::optional<Recorder> recorder;
   if (!options.record.empty()) recorder.emplace(RecorderOptions{options.record, info.calibration});
-  std::optional<PoseServer> server;
-  if (!options.serve.empty()) server.emplace(options.serve, robot && !path);
   std::optional<RobotDriver> driver;
   if (robot)
     driver.emplace(*robot, steering_of(options), path ? &*path : nullptr,

@@ -14,6 +14,9 @@ namespace st {
 
 int listen_at(const std::string& option, const std::string& address) {
   const std::string where = address.find(':') == std::string::npos ? "127.0.0.1:" + address : address;
+  const std::string port = where.substr(where.rfind(':') + 1);
+  if (port.empty() || port.find_first_not_of("0123456789") != std::string::npos)
+    throw Failure(ExitCode::kBadInput, option + " " + address + ": is not [HOST:]PORT, such as 7171");
   const PortAddress resolved = port_address("tcp:" + where, 0);
   const int fd = socket(resolved.host.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const int yes = 1;

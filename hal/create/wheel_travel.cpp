@@ -83,12 +83,9 @@ bool WheelTravel::from_requests(double t_s, const SensorState& state, bool after
   predicted_rad_ += (right_m - left_m) / believed_.wheel_base_m;
   if (state.has(oi::kDistance) && state.has(oi::kAngle)) {
     if (comparable_) {
-      // The robot read its sums somewhere in the slot, not where ours was cut.
-      const double slot_m = std::fabs(0.5 * (left_m + right_m)),
-                   slot_rad = std::fabs(right_m - left_m) / believed_.wheel_base_m;
-      const double along_m = beyond_rounding(state.value(oi::kDistance) * 1e-3 - predicted_m_, 1e-3 + slot_m);
+      const double along_m = beyond_rounding(state.value(oi::kDistance) * 1e-3 - predicted_m_, 1e-3);
       const double turn_rad =
-          beyond_rounding(state.value(oi::kAngle) * kPi / 180 - predicted_rad_, kPi / 180 + slot_rad);
+          beyond_rounding(state.value(oi::kAngle) * kPi / 180 - predicted_rad_, kPi / 180);
       left_m += along_m - 0.5 * turn_rad * believed_.wheel_base_m;
       right_m += along_m + 0.5 * turn_rad * believed_.wheel_base_m;
     }

@@ -96,6 +96,19 @@ TEST(BadInput, WordsOfTheCommandLine) {
   check_refused({"run", "--source", folder / "good", "--robot", "sim", "--path",
                  STARTRACK_SOURCE_DIR "/examples/paths/circle-0.5.toml", "--out", folder / "run"},
                 "needs a camera that sees it now");
+  check_refused({"run", "--source", "sim:lab", "--loop", "closed", "--out", folder / "run"},
+                "--loop closed needs --robot PORT and --path FILE");
+  check_refused({"run", "--source", "sim:lab", "--robot", "sim", "--out", folder / "run"},
+                "what shall it do?");
+  check_refused({"run", "--source", "sim:lab", "--serve", "no-port", "--out", folder / "run"}, "no-port");
+  check_refused({"run", "--source", "sim:lab", "--record", folder / "good", "--out", folder / "run"},
+                "good: is not empty");
+  for (const char* arena : {"1,2", "1,2;3,4", "1,2;3,4;x,6", "1;2;3"})
+    check_refused(replay(folder / "good", {"--arena", arena}), "three to sixteen corners");
+  check_refused({"drive", "--robot", "sim", "--wheels", file("w.toml", "wheelbase = 1\n"), "--path", "p"},
+                "w.toml:1: unknown key");
+  check_refused({"calibrate", "robot", "--run", folder / "good", "--recording", folder / "good"},
+                "is no run");
   const std::string truth = file("truth.tum", "1 0 0 0 0 0 0 1\n");
   check_refused({"evaluate", folder / "good", "--truth", truth}, "good: is no run");
   check_refused({"evaluate", file("notes.txt", "mine\n"), "--truth", truth},

@@ -45,6 +45,14 @@ TEST(Trackers, EveryOneFollowsTheRobotInItsOwnWay) {
   }
 }
 
+// The robot stands some two metres before the camera.
+TEST(Trackers, NoTrackStartsOutsideTheArena) {
+  const nlohmann::json inside = replay("inside", {"--arena", "0,-5;10,-5;10,5;0,5"});
+  CHECK(inside["objects"].size() == 1);
+  const nlohmann::json outside = replay("outside", {"--arena", "-5,-5;0,-5;0,5;-5,5"});
+  CHECK(outside["objects"].empty());
+}
+
 // The paper's section 4.2: what frame to frame gets wrong it keeps, the updated model brings back.
 TEST(Trackers, FrameToFrameDriftsAwayFromWhatTheModelHolds) {
   const auto end_error_mm = [this](const std::string& name) {

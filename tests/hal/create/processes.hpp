@@ -34,6 +34,8 @@ inline pid_t start_program(std::vector<std::string> arguments, int in = -1) {
   const pid_t pid = fork();
   if (pid != 0) return pid;
   setpgid(0, 0);
+  // A test that itself was started in the background has these ignored, and would hand that on.
+  for (const int number : {SIGINT, SIGQUIT, SIGHUP}) signal(number, SIG_DFL);
   const int nothing = open("/dev/null", O_RDWR);
   for (int fd = 0; fd < 3; ++fd) dup2(fd == 0 && in >= 0 ? in : nothing, fd);
   execv(STARTRACK_BINARY, argv.data());

@@ -136,3 +136,14 @@ TEST(WheelTravel, Create1DoesNotCompareAcrossALostReading) {
   }
   DOUBLES_EQUAL(0.2 * 0.6, way, 1e-9);
 }
+
+TEST(WheelTravel, UnequalWheelsRollTheirOwnWays) {
+  RobotGeometry unequal = kCreate2;
+  unequal.right_to_left = 1.02;
+  WheelTravel travel(RobotModel::kCreate2, unequal);
+  OdometrySample sample;
+  travel.update(0.000, encoders(0, 0), false, sample);
+  CHECK(travel.update(0.015, encoders(20, 20), false, sample));
+  DOUBLES_EQUAL(1.02, sample.right_m / sample.left_m, 1e-12);
+  DOUBLES_EQUAL(20 * 0.000444565, 0.5 * (sample.left_m + sample.right_m), 1e-7);
+}
