@@ -86,6 +86,7 @@ SimChild::SimChild(const std::string& port, RobotModel model, std::uint64_t seed
                                         std::to_string(life[0])};
   add_switches(port, arguments);
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   pid_ = fork();

@@ -49,7 +49,10 @@ MeasuredRobot parse_wheels_toml(std::string_view text, const std::string& name) 
       if (key.str() == k.name) known = &k;
     if (known == nullptr) {
       std::string names;
-      for (const Key& k : kKeys) names += std::string(names.empty() ? "" : ", ") + k.name;
+      for (const Key& k : kKeys) {
+        if (!names.empty()) names += ", ";
+        names += k.name;
+      }
       throw Failure(ExitCode::kBadInput,
                     where + "unknown key '" + std::string(key.str()) + "'; known here: " + names);
     }

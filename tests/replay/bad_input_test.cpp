@@ -108,7 +108,7 @@ TEST(BadInput, WordsOfTheCommandLine) {
   check_refused({"drive", "--robot", "sim", "--wheels", file("w.toml", "wheelbase = 1\n"), "--path", "p"},
                 "w.toml:1: unknown key");
   check_refused({"calibrate", "robot", "--run", folder / "good", "--recording", folder / "good"},
-                "is no run");
+                "is not a run");
   const std::string truth = file("truth.tum", "1 0 0 0 0 0 0 1\n");
   check_refused({"evaluate", folder / "good", "--truth", truth}, "good: is no run");
   check_refused({"evaluate", file("notes.txt", "mine\n"), "--truth", truth},
