@@ -1,7 +1,7 @@
 # Writes the test groups of PROGRAM as ctest entries into OUT. Groups that drive a simulated robot in real time run alone:
 # on two cores a neighbour that computes would stall them.
 cmake_minimum_required(VERSION 3.25)
-set(REAL_TIME CreateRobot StandingRobot RemoteGuard Accessory Guard CreatePty SimSource Kinect)
+set(REAL_TIME CreateRobot StandingRobot RemoteGuard Accessory Guard CreatePty SimSource Kinect ClosedLoopRun Serve)
 execute_process(COMMAND ${PROGRAM} -lg OUTPUT_VARIABLE groups COMMAND_ERROR_IS_FATAL ANY)
 string(STRIP "${groups}" groups)
 string(REPLACE " " ";" groups "${groups}")
