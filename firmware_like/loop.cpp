@@ -16,52 +16,7 @@ Loop::Loop(const LoopParts& parts, const LoopConfig& config)
       stages_(parts.clock),
       degradation_(parts.source.info().frame_period_s) {}
 
-// STAR, Listing 1: segment, align with the model, judge, fuse into the model; for every object, every frame.
-LoopEnd Loop::run() {
-  ObjectTracker& tracker = parts_.tracker;
-  while (acquire()) {
-    tracker.preprocess(input_, report_);
-    stages_.done(Stage::kPreprocess);
-    tracker.segment();
-    stages_.done(Stage::kSegment);
-    tracker.predict();
-    stages_.done(Stage::kPredict);
-    tracker.render();
-    stages_.done(Stage::kRender);
-    tracker.associate_pixels();
-    stages_.done(Stage::kAssociate);
-    tracker.align_all(ladder_step(level_));
-    stages_.done(Stage::kAlign);
-    tracker.judge_all();
-    stages_.done(Stage::kJudge);
-    tracker.integrate_all(ladder_step(level_));
-    stages_.done(Stage::kIntegrate);
-    tracker.decide_lives(ladder_step(level_));
-    stages_.done(Stage::kDecide);
-    drive();
-    stages_.done(Stage::kSend);
-    publish();
-  }
-  if (parts_.driver != nullptr) parts_.driver->stop();
-  return end_;
-}
-
 double Loop::now_s() const { return static_cast<double>(parts_.clock.monotonic_ns()) * 1e-9; }
-
-void Loop::drive() {
-  if (parts_.driver == nullptr) return;
-  Sight sight{true, false, 0};
-  for (const Track& track : parts_.tracker.tracks())
-    sight.sees = sight.sees || (track.active() && track.state == TrackState::kGood);
-  if (input_.complete_ns != 0)
-    sight.age_s = static_cast<double>(parts_.clock.monotonic_ns() - input_.complete_ns) * 1e-9;
-  const RobotFault before = parts_.driver->held_by();
-  parts_.driver->decide(now_s(), sight);
-  parts_.driver->send();
-  const RobotFault now = parts_.driver->held_by();
-  if (now == before || now == RobotFault::kNone) return;
-  report_.events.push_back({report_.t_s, EventKind::kRobotFault, 0, static_cast<double>(now), 0, 0});
-}
 
 // The one place that waits: for the next frame, and in a replay for room in the ring of reports.
 bool Loop::acquire() {
@@ -110,7 +65,6 @@ bool Loop::stop(LoopEnd why) {
 }
 
 void Loop::publish() {
-  parts_.tracker.publish(report_);
   ++frames_;
   stages_.done(Stage::kPublish);
   stages_.end_frame();

@@ -88,6 +88,14 @@ struct ObjectSample {
   float residual_m = 0;  // RMS
 };
 
+// The hand-held camera in one frame of scan mode: a row of camera.tum when its pose is good.
+struct CameraSample {
+  TrackState state = TrackState::kLost;
+  Pose T_world_camera{};  // world: the camera's first pose
+  float inliers = 0;      // share of the paired pixels that the pose explains, 0-1
+  float residual_m = 0;   // RMS of those
+};
+
 // The loop's stages, in order. timing.csv has a column for each.
 enum class Stage : std::uint8_t {
   kAcquire,
@@ -112,6 +120,8 @@ struct FrameReport {
   std::uint64_t index = 0;
   double t_s = 0, device_t_s = 0;
   FixedVector<ObjectSample, kMaxObjects> objects;
+  bool has_camera = false;  // scan mode
+  CameraSample camera;
   FixedVector<Event, 24> events;
   float stage_us[kStageCount]{};
   float frame_us = 0;  // frame handed over until published, wall clock

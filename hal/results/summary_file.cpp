@@ -100,7 +100,7 @@ const char* name_of(Ending ending) {
 
 std::string format_summary(const RunEnd& end, const RunAnalysis& analysis, const TimingSummary& timing,
                            const std::string& hash) {
-  std::uint64_t tracked = 0, lost = 0;
+  std::uint64_t tracked = end.camera.tracked, lost = end.camera.lost;
   Json objects = Json::array();
   for (const ObjectEnd& object : end.objects) {
     tracked += object.tracked;
