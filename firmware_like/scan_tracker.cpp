@@ -7,6 +7,8 @@ namespace st {
 namespace {
 
 constexpr int kScanSide = 256;
+// A room does not change: what was seen often is to be held as long as a byte can count.
+constexpr IntegrateOptions kIntegrate{.noise = {}, .weight_cap = kMaxWeightCap};
 constexpr float kMaxExtent_m = 8, kMinExtent_m = 0.8f;
 
 // The share `q` of the readings is nearer than this. Of every 7th pixel, in 1 cm steps.
@@ -75,7 +77,7 @@ void ScanTracker::preprocess(const FrameInput& input, FrameReport& report) {
 // As wide as what the first frame shows is far, and a little behind it; the camera stands before the middle
 // of its near face.
 void ScanTracker::place_volume() {
-  constexpr float kBehind = 1.25f, kBeforeNearest = 0.05f;
+  constexpr float kBehind = 1.1f, kBeforeNearest = 0.05f;
   const float far_m = depth_quantile_m(depth_.levels[0].z, 0.95);
   const ScanPlace& place = config_.place;
   const float extent = place.extent_m > 0 ? static_cast<float>(place.extent_m)
@@ -91,7 +93,7 @@ void ScanTracker::predict() { T_world_view_ = motion_.predict(input_->device_t_s
 
 void ScanTracker::render() {
   raycast(volume_, camera_, {0, 0, camera_.width, camera_.height}, T_world_view_.inverse(), raycast_scratch_,
-          view_);
+          view_, {false, true});
 }
 
 void ScanTracker::align() {
@@ -127,8 +129,8 @@ void ScanTracker::integrate() {
   input.camera = camera_;
   input.roi = {0, 0, camera_.width, camera_.height};
   input.depth_m = depth_.levels[0].z;
-  fused_ = st::integrate(volume_, input, camera_now_.T_world_camera.inverse(), IntegrateOptions{},
-                         integrate_scratch_);
+  fused_ =
+      st::integrate(volume_, input, camera_now_.T_world_camera.inverse(), kIntegrate, integrate_scratch_);
 }
 
 void ScanTracker::decide() {

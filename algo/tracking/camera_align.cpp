@@ -18,7 +18,7 @@ struct Level {
 constexpr Level kLevels[] = {
     {2, 6, 1.0, 8.0f},
     {1, 5, 0.5, 5.0f},
-    {0, 4, 0.25, 4.0f},
+    {0, 4, 0.25, 3.0f},
 };
 constexpr double kLargestStep_m = 0.1, kLargestStep_rad = 0.15;
 constexpr double kSettled_m = 2e-5, kSettled_rad = 1e-5;

@@ -257,10 +257,10 @@ HWY_INLINE void settle(D d, MarchKernel& k, const Ray& ray, const March& m, floa
     weight = hn::IfThenElseZero(hn::RebindMask(du, f.valid), hn::And(four, hn::Set(du, 255u)));
     const M hit = hn::RebindMask(d, hn::Ne(weight, hn::Zero(du)));
     z = hn::IfThenElseZero(hit, z1);
-    color = color_at(d, k, f, hit);
+    if (k.color != nullptr) color = color_at(d, k, f, hit);
   }
   hn::StoreU(z, d, depth);
-  hn::StoreU(color, du, k.out_color + at);
+  if (k.color != nullptr) hn::StoreU(color, du, k.out_color + at);
   hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di, weight)), d8, k.out_weight + at);
 }
 
@@ -294,8 +294,18 @@ HWY_INLINE void shade(D d, MarchKernel& k, const float* p, int u, int v, std::si
   VU normal = hn::Zero(du);
   if (!hn::AllFalse(d, has)) {
     const V gap = slope::gap_of(d, z, slope::coarse(k.fx));
-    const slope::Slope su = slope::along(d, p, 1, k.normal_reach, z, gap);
-    const slope::Slope sv = slope::along(d, p, k.padded_stride, k.normal_reach, z, gap);
+    slope::Slope su = slope::along(d, p, 1, k.normal_reach, z, gap);
+    slope::Slope sv = slope::along(d, p, k.padded_stride, k.normal_reach, z, gap);
+    if (k.young_reach > k.normal_reach) {
+      const VU weight = hn::PromoteTo(du, hn::LoadU(D8(), k.out_weight + at));
+      const M young = hn::And(has, hn::RebindMask(d, hn::Lt(weight, hn::Set(du, k.young_weight))));
+      if (!hn::AllFalse(d, young)) {
+        const V wide_u = slope::along(d, p, 1, k.young_reach, z, gap).value;
+        const V wide_v = slope::along(d, p, k.padded_stride, k.young_reach, z, gap).value;
+        su.value = hn::IfThenElse(young, wide_u, su.value);
+        sv.value = hn::IfThenElse(young, wide_v, sv.value);
+      }
+    }
     const V du_px = hn::Sub(hn::Iota(d, static_cast<float>(u)), hn::Set(d, k.cx));
     const V dv_px = hn::Set(d, static_cast<float>(v) - k.cy);
     const slope::Normal n = slope::normal_of(d, du_px, dv_px, k.fx, k.fy, z, su.value, sv.value);
@@ -331,7 +341,7 @@ void rays(MarchKernel& work) {
       }
       for (int row = v; row < v + 2 && row < k.height; ++row) {  // the padded image is zero already
         const std::size_t empty = at + static_cast<std::size_t>(row - v) * static_cast<std::size_t>(k.stride);
-        hn::StoreU(hn::Zero(du), du, k.out_color + empty);
+        if (k.color != nullptr) hn::StoreU(hn::Zero(du), du, k.out_color + empty);
         hn::StoreU(hn::Zero(d8), d8, k.out_weight + empty);
       }
     }
