@@ -55,6 +55,7 @@ void ScanTracker::bind_volume(Bump& memory) { volume_.bind(memory, config_.volum
 void ScanTracker::bind_view(Bump& memory) {
   view_.bind(memory, camera_.width, camera_.height);
   raycast_scratch_.bind(memory, camera_.width, camera_.height);
+  places_.bind(memory);
 }
 
 void ScanTracker::bind_integration(Bump& memory) {
@@ -89,42 +90,75 @@ void ScanTracker::place_volume() {
   volume_.reset(voxel, choose_truncation_m(voxel, depth_sigma_m(far_m)), centre);
 }
 
-void ScanTracker::predict() { T_world_view_ = motion_.predict(input_->device_t_s); }
+// While searching, the scene is looked at from the places that were most like what the camera sees now, one
+// a frame, and from where it was lost.
+void ScanTracker::predict() {
+  T_world_view_ = course_ == Course::kSearching ? place_to_try() : motion_.predict(input_->device_t_s);
+}
+
+Pose ScanTracker::place_to_try() const {
+  constexpr std::size_t kPlacesTried = 5;
+  const std::size_t turn = tries_ % (kPlacesTried + 1);
+  if (turn == 0 || places_.size() == 0) return motion_.last();
+  return places_.like(thumbnail_of(depth_.levels[2].z), (turn - 1) % places_.size()).T_world_camera;
+}
 
 void ScanTracker::render() {
   raycast(volume_, camera_, {0, 0, camera_.width, camera_.height}, T_world_view_.inverse(), raycast_scratch_,
           view_, {false, true});
 }
 
+CameraPrior ScanTracker::prior() const {
+  CameraPrior prior;
+  if (course_ == Course::kSearching) prior.sigma_m = prior.sigma_rad = 0.3;
+  prior.has_up = input_->has_gravity && norm(up_world_) > 0;
+  if (prior.has_up) {
+    prior.up_frame = normalized(input_->gravity_mps2);
+    prior.up_view = T_world_view_.R.transposed() * normalized(up_world_);
+  }
+  return prior;
+}
+
 void ScanTracker::align() {
+  constexpr double kSearchGate_m = 0.3, kSecondGate_m = 0.2;
   aligned_ = CameraAlignResult{};
   if (volume_.integrations == 0) return;
-  aligned_ = align_camera({depth_, view_, camera_, Pose{}, {}});
+  CameraAlignInput in{depth_, view_, camera_, Pose{}, prior()};
+  if (course_ == Course::kSearching) in.gate_m = kSearchGate_m;
+  aligned_ = align_camera(in);
+  if (course_ == Course::kSearching) return;
+  if (judge_camera(aligned_, depth_.levels[0].z.pixels(), habit_).state == TrackState::kGood) return;
+  // A hand that stops or turns at once is nearer to where it was than to where it was going.
+  in.start = T_world_view_.inverse() * motion_.last();
+  in.gate_m = kSecondGate_m;
+  const CameraAlignResult second = align_camera(in);
+  if (second.inliers > aligned_.inliers) aligned_ = second;
 }
 
 void ScanTracker::judge() {
-  constexpr double kMostMove_m = 0.3, kMostTurn_rad = 0.4;
-  constexpr float kLeastExplained = 0.4f, kLeastPaired = 0.08f;
   camera_now_ = CameraSample{};
   if (volume_.integrations == 0) {  // the first frame is where the world begins
-    const bool usable = static_cast<int>(depth_.levels[0].z.pixels()) > 0;
-    camera_now_.state = usable ? TrackState::kGood : TrackState::kLost;
+    camera_now_.state = TrackState::kGood;
     return;
   }
-  const Pose& T = aligned_.T_view_camera;
-  camera_now_.T_world_camera = T_world_view_ * T;
-  camera_now_.residual_m = static_cast<float>(aligned_.rms_m);
-  if (aligned_.paired > 0)
-    camera_now_.inliers = static_cast<float>(aligned_.inliers) / static_cast<float>(aligned_.paired);
-  const float paired = static_cast<float>(aligned_.paired) / static_cast<float>(depth_.levels[0].z.pixels());
-  const bool plausible = norm(T.t) < kMostMove_m && rotation_angle(T.R) < kMostTurn_rad;
-  const bool good =
-      aligned_.solved && plausible && paired > kLeastPaired && camera_now_.inliers > kLeastExplained;
-  camera_now_.state = good ? TrackState::kGood : TrackState::kLost;
+  verdict_ = judge_camera(aligned_, depth_.levels[0].z.pixels(), habit_);
+  camera_now_ = {verdict_.state, T_world_view_ * aligned_.T_view_camera, verdict_.explained,
+                 static_cast<float>(aligned_.rms_m)};
+  // What is found by searching has more to show than what was followed.
+  constexpr float kLeastPairedFound = 0.2f, kOfUsual = 0.85f;
+  const bool found = verdict_.state == TrackState::kGood && verdict_.paired > kLeastPairedFound &&
+                     verdict_.explained > kOfUsual * habit_.explained && upright(camera_now_.T_world_camera);
+  if (course_ == Course::kSearching && !found) camera_now_.state = TrackState::kLost;
+}
+
+bool ScanTracker::upright(const Pose& T_world_camera) const {
+  constexpr double kCosMostLean = 0.966;  // 15 degrees: a hand's pushes lean the accelerometer's up
+  if (!input_->has_gravity || norm(up_world_) == 0) return true;
+  return dot(T_world_camera.R * normalized(input_->gravity_mps2), normalized(up_world_)) > kCosMostLean;
 }
 
 void ScanTracker::integrate() {
-  if (camera_now_.state != TrackState::kGood) return;
+  if (camera_now_.state != TrackState::kGood || course_ != Course::kFollowing) return;
   EvidenceInput input;
   input.camera = camera_;
   input.roi = {0, 0, camera_.width, camera_.height};
@@ -134,16 +168,87 @@ void ScanTracker::integrate() {
 }
 
 void ScanTracker::decide() {
-  if (camera_now_.state == TrackState::kGood) {
-    motion_.take(input_->device_t_s, camera_now_.T_world_camera);
-    frames_lost_ = 0;
-    ++count_.tracked;
-  } else {
-    motion_.stop();
-    ++frames_lost_;
-    ++count_.lost;
+  switch (course_) {
+    case Course::kFollowing:
+      follow();
+      break;
+    case Course::kSearching:
+      ++tries_;
+      if (camera_now_.state != TrackState::kGood) break;
+      motion_.restart(input_->device_t_s, camera_now_.T_world_camera);
+      course_ = Course::kProving;
+      proven_ = 0;
+      camera_now_.state = TrackState::kPoor;
+      break;
+    case Course::kProving:
+      prove();
+      break;
   }
-  count_.good_at_end = camera_now_.state == TrackState::kGood;
+  const bool good = camera_now_.state == TrackState::kGood;
+  ++(good ? count_.tracked : count_.lost);
+  count_.good_at_end = good;
+}
+
+void ScanTracker::follow() {
+  constexpr int kMostPoor = 15;
+  switch (camera_now_.state) {
+    case TrackState::kGood:
+      poor_run_ = 0;
+      motion_.take(input_->device_t_s, camera_now_.T_world_camera);
+      places_.remember(camera_now_.T_world_camera, depth_.levels[2].z);
+      if (volume_.integrations > 1) learn(habit_, verdict_);
+      learn_up();
+      watch_border();
+      return;
+    case TrackState::kPoor:
+      motion_.take(input_->device_t_s, camera_now_.T_world_camera);
+      motion_.slow();
+      if (++poor_run_ > kMostPoor) lose();
+      return;
+    default:
+      lose();
+  }
+}
+
+void ScanTracker::lose() {
+  camera_now_.state = TrackState::kLost;
+  course_ = Course::kSearching;
+  tries_ = 0;
+  lost_t_s_ = input_->t_s;
+  log(EventKind::kLost, camera_now_.inliers);
+}
+
+// Found again: the scene may change once several frames in a row have borne it out.
+void ScanTracker::prove() {
+  constexpr int kProofs = 3;
+  if (camera_now_.state != TrackState::kGood) {
+    course_ = Course::kSearching;
+    camera_now_.state = TrackState::kLost;
+    return;
+  }
+  motion_.take(input_->device_t_s, camera_now_.T_world_camera);
+  if (++proven_ < kProofs) {
+    camera_now_.state = TrackState::kPoor;
+    return;
+  }
+  course_ = Course::kFollowing;
+  poor_run_ = 0;
+  log(EventKind::kRecovered, input_->t_s - lost_t_s_);
+}
+
+void ScanTracker::learn_up() {
+  constexpr double kGravity_mps2 = 9.80665, kStill_mps2 = 0.6;
+  if (!input_->has_gravity || std::fabs(norm(input_->gravity_mps2) - kGravity_mps2) > kStill_mps2) return;
+  up_world_ += camera_now_.T_world_camera.R * normalized(input_->gravity_mps2);
+}
+
+// Said once each time that most of what the camera sees comes to lie outside of the volume.
+void ScanTracker::watch_border() {
+  constexpr float kOut = 0.6f, kBackIn = 0.4f;
+  if (fused_.surface_pixels == 0) return;
+  const float share = static_cast<float>(fused_.outside_pixels) / static_cast<float>(fused_.surface_pixels);
+  if (!outside_ && share > kOut) log(EventKind::kVolumeLeft, static_cast<double>(share));
+  outside_ = share > (outside_ ? kBackIn : kOut);
 }
 
 void ScanTracker::log(EventKind kind, double a, double b) {

@@ -6,8 +6,10 @@
 #include "algo/core/records.hpp"
 #include "algo/depth/pyramid.hpp"
 #include "algo/tracking/camera_align.hpp"
+#include "algo/tracking/camera_judge.hpp"
 #include "algo/tracking/camera_motion.hpp"
 #include "algo/tracking/observe.hpp"
+#include "algo/tracking/places.hpp"
 #include "algo/volume/integrate.hpp"
 #include "algo/volume/raycast.hpp"
 #include "firmware_like/config.hpp"
@@ -53,6 +55,14 @@ class ScanTracker {
   void bind_integration(Bump& memory);
 
   void place_volume();
+  Pose place_to_try() const;
+  CameraPrior prior() const;
+  bool upright(const Pose& T_world_camera) const;
+  void learn_up();
+  void follow();
+  void lose();
+  void prove();
+  void watch_border();
   void log(EventKind kind, double a = 0, double b = 0);
 
   Part parts_[4];
@@ -72,11 +82,21 @@ class ScanTracker {
 
   CameraMotion motion_;
   CameraAlignResult aligned_;
+  CameraVerdict verdict_;
+  CameraHabit habit_;
   CameraSample camera_now_;
   IntegrateStats fused_;
+  Places places_;
+  Vec3 up_world_{};  // by the accelerometer, over the good frames so far; zero: it never said
+
+  // Good: followed and fused. Searching: lost, a kept place is tried each frame. Proving: found again, and
+  // followed for some frames before the scene may change.
+  enum class Course { kFollowing, kSearching, kProving };
+  Course course_ = Course::kFollowing;
+  int poor_run_ = 0, proven_ = 0;
+  std::size_t tries_ = 0;  // places tried since the camera was lost
+  double lost_t_s_ = 0;
   bool outside_ = false;  // most of what the camera sees lies outside of the volume
-  int frames_lost_ = 0;   // in a row
-  double last_good_t_s_ = 0;
   FixedVector<Event, 8> events_;
   CameraEnd count_;
 };

@@ -34,6 +34,7 @@ enum class EventKind : std::uint8_t {
   kRobotFault,   // a: RobotFault code
   kVolumeFull,   // surface outside the object's volume was dropped
   kInterrupted,  // a: signal
+  kVolumeLeft,   // scan mode, a: share of the surface in sight that lies outside of the volume
 };
 const char* name_of(EventKind kind);
 
@@ -92,7 +93,7 @@ struct ObjectSample {
 struct CameraSample {
   TrackState state = TrackState::kLost;
   Pose T_world_camera{};  // world: the camera's first pose
-  float inliers = 0;      // share of the paired pixels that the pose explains, 0-1
+  float inliers = 0;      // of the pixels that face a known surface, the share that the pose explains, 0-1
   float residual_m = 0;   // RMS of those
 };
 

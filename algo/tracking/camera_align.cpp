@@ -57,7 +57,7 @@ void sum_up(CameraKernel& k, const Pose& T) {
   for (double& x : k.triangle) x = 0;
   for (double& x : k.gradient) x = 0;
   k.square_sum = 0;
-  k.readings = k.paired = k.inliers = 0;
+  k.readings = k.facing = k.paired = k.inliers = 0;
   accumulate_camera(k);
 }
 
@@ -133,6 +133,7 @@ CameraAlignResult align_camera(const CameraAlignInput& in) {
       if (step.settled) break;
     }
     result.readings = k.readings;
+    result.facing = k.facing;
     result.paired = k.paired;
     result.inliers = k.inliers;
     result.rms_m = k.inliers > 0 ? std::sqrt(k.square_sum / k.inliers) : 0;

@@ -29,7 +29,8 @@ struct CameraAlignResult {
   Pose T_view_camera;
   bool solved = false;
   int readings = 0;  // pixels of the finest level that was used
-  int paired = 0;    // with a surface of the view in reach
+  int facing = 0;    // with a surface of the view before or behind them
+  int paired = 0;    // with one in reach
   int inliers = 0;   // within three sigma
   double rms_m = 0;  // of the inliers
   int iterations = 0;

@@ -64,7 +64,9 @@ HWY_INLINE Pairs pair_pixels(D d, CameraKernel& k, const float* row, int u, cons
   const V distance2 = hn::MulAdd(gx, gx, hn::MulAdd(gy, gy, hn::Mul(gz, gz)));
   o.sigma = hn::MulAdd(hn::Mul(o.z, o.z), hn::Set(d, kDepthSigmaPerSquare), hn::Set(d, kLeastDepthSigma_m));
   const V reach2 = hn::MulAdd(hn::Mul(o.sigma, o.sigma), hn::Set(d, 16.0f), hn::Set(d, k.gate2_m2));
-  o.on = hn::And(hn::And(inside, hn::Gt(qz, hn::Zero(d))), hn::Le(distance2, reach2));
+  const M facing = hn::And(inside, hn::Gt(qz, hn::Zero(d)));
+  k.facing += static_cast<int>(hn::CountTrue(d, facing));
+  o.on = hn::And(facing, hn::Le(distance2, reach2));
   const VI packed = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(k.view_normal), at);
   const V unit = hn::Set(d, 1.0f / kNormalScale);
   o.nx = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(packed))), unit);

@@ -22,7 +22,7 @@ struct CameraKernel {
   // Results: sums of w J J^T (upper triangle by rows) and w J r; of r^2 over the variance of the inliers, and
   // of r^2 itself.
   double triangle[21]{}, gradient[6]{}, square_sum = 0;
-  int readings = 0, paired = 0, inliers = 0;
+  int readings = 0, facing = 0, paired = 0, inliers = 0;
 };
 
 void accumulate_camera(CameraKernel& work);

@@ -30,12 +30,14 @@ class CameraMotion {
     known_ = false;
     take(t_s, T_world_camera);
   }
-  void stop() { moving_ = false; }
+  // The pose just taken is doubtful: the speed that it implies fades, so that it does not carry the camera
+  // off.
+  void slow() { velocity_ = {velocity_.v * kFading, velocity_.w * kFading}; }
 
   const Pose& last() const { return T_; }
 
  private:
-  static constexpr double kLongest_s = 0.2;
+  static constexpr double kLongest_s = 0.2, kFading = 0.8;
 
   bool known_ = false, moving_ = false;
   double t_s_ = 0;
