@@ -104,8 +104,13 @@ Pose ScanTracker::place_to_try() const {
 }
 
 void ScanTracker::render() {
+  RaycastOptions options;
+  options.with_color = false;
+  options.smooth_young = true;
+  // Where the camera is about where it is expected, its own readings say where the surfaces are.
+  if (course_ != Course::kSearching) options.guess = depth_.levels[0].z;
   raycast(volume_, camera_, {0, 0, camera_.width, camera_.height}, T_world_view_.inverse(), raycast_scratch_,
-          view_, {false, true});
+          view_, options);
 }
 
 CameraPrior ScanTracker::prior() const {

@@ -14,14 +14,14 @@ struct Level {
   int iterations;
   double gate;  // share of the input's
   float robust_sigmas;
+  double settled_m, settled_rad;  // a smaller step is the last of the level
 };
 constexpr Level kLevels[] = {
-    {2, 6, 1.0, 8.0f},
-    {1, 5, 0.5, 5.0f},
-    {0, 4, 0.25, 3.0f},
+    {2, 6, 1.0, 8.0f, 5e-4, 5e-4},
+    {1, 5, 0.5, 5.0f, 2e-4, 2e-4},
+    {0, 4, 0.25, 3.0f, 5e-5, 4e-5},
 };
 constexpr double kLargestStep_m = 0.1, kLargestStep_rad = 0.15;
-constexpr double kSettled_m = 2e-5, kSettled_rad = 1e-5;
 // Neighbouring pixels share the sensor's matching window: so many count as one measurement.
 constexpr double kCorrelatedPixels = 30;
 
@@ -83,7 +83,8 @@ void add_prior(const CameraPrior& prior, const Pose& T, NormalEquations& eq) {
 
 struct Step {
   Twist twist;
-  bool solved = false, settled = false;
+  bool solved = false;
+  double move_m = 0, turn_rad = 0;
 };
 
 Step solve(const NormalEquations& eq) {
@@ -97,9 +98,9 @@ Step solve(const NormalEquations& eq) {
   step.solved = solve_spd(A, b, x, 6);
   if (!step.solved) return step;
   step.twist = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
-  const double move = norm(step.twist.v), turn = norm(step.twist.w);
-  step.settled = move < kSettled_m && turn < kSettled_rad;
-  const double m = move / kLargestStep_m, r = turn / kLargestStep_rad;
+  step.move_m = norm(step.twist.v);
+  step.turn_rad = norm(step.twist.w);
+  const double m = step.move_m / kLargestStep_m, r = step.turn_rad / kLargestStep_rad;
   const double over = m > r ? m : r;
   if (over > 1.0) step.twist = {step.twist.v * (1.0 / over), step.twist.w * (1.0 / over)};
   return step;
@@ -130,7 +131,7 @@ CameraAlignResult align_camera(const CameraAlignInput& in) {
       if (!step.solved) return result;
       ++result.iterations;
       T = moved_about(T, step.twist, Vec3{});
-      if (step.settled) break;
+      if (step.move_m < level.settled_m && step.turn_rad < level.settled_rad) break;
     }
     result.readings = k.readings;
     result.facing = k.facing;

@@ -21,7 +21,10 @@ struct MarchKernel {
   int width, height, stride;
   const float* nearest;  // per tile; nearest > farthest: nothing there
   const float* farthest;
-  float* depth;  // at the first pixel of the padded image
+  const float* seed;  // guess of each pixel's depth, 0: none; or null
+  int seed_stride;
+  float seed_reach;  // metres of depth round the guess that a ray looks at
+  float* depth;      // at the first pixel of the padded image
   int padded_stride, normal_reach;
   int young_reach;             // for surface of less than young_weight; 0: the same everywhere
   std::uint32_t young_weight;  // halves of a nominal observation

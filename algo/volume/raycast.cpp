@@ -110,6 +110,11 @@ RaycastStats raycast(const Volume& volume, const Pinhole& camera, const Rect& ro
   k.nearest = scratch.nearest.data();
   k.farthest = scratch.farthest.data();
   k.normal_reach = normal_reach(camera, (to_float(T_camera_object) * volume.centre()).z);
+  if (!options.guess.empty()) {
+    k.seed = options.guess.row(out.roi.v0) + out.roi.u0;
+    k.seed_stride = options.guess.width;
+    k.seed_reach = kGuessReach * volume.truncation_m;
+  }
   k.young_reach = options.smooth_young ? kRayMargin - 2 : 0;
   k.young_weight = kYoungWeight;
   k.padded_stride = out.stride + 2 * kRayMargin;

@@ -56,7 +56,13 @@ struct RaycastOptions {
   // Normals over a wider span where the surface was seen in few frames only. A sensor's noise stands still in
   // its image; in a young model it makes slopes of its own, which tell an alignment that nothing has moved.
   bool smooth_young = false;
+  // Depth where each pixel's surface is guessed to be, whole image; may be empty. Rays then look only within
+  // kGuessReach truncations of it, and pixels without a guess stay empty: enough to align the frame that the
+  // guesses are from, at a fraction of the march.
+  ImageView<const float> guess = {};
 };
+
+inline constexpr float kGuessReach = 3.0f;
 
 struct RaycastStats {
   int rays = 0;  // that had any solid brick in their way
