@@ -39,7 +39,7 @@ ScanTracker::ScanTracker(const Calibration& calibration, const LoopConfig& confi
 }
 
 void ScanTracker::plan_memory(MemoryPlan& plan) {
-  plan.add("depth images of the frame", "algo/depth", parts_[0]);
+  plan.add("images of the frame", "algo/depth", parts_[0]);
   plan.add("the scene, one volume", "algo/volume", parts_[1]);
   plan.add("view of the scene", "algo/volume", parts_[2]);
   plan.add("work memory of the fusion", "algo/volume", parts_[3]);
@@ -48,6 +48,12 @@ void ScanTracker::plan_memory(MemoryPlan& plan) {
 void ScanTracker::bind_images(Bump& memory) {
   tables_.bind(memory, calibration_);
   depth_.bind(memory, camera_);
+  if (calibration_.has_color)
+    color_ = {memory
+                  .take<std::uint32_t>(static_cast<std::size_t>(camera_.width) *
+                                       static_cast<std::size_t>(camera_.height))
+                  .data(),
+              camera_.width, camera_.height};
 }
 
 void ScanTracker::bind_volume(Bump& memory) { volume_.bind(memory, config_.volume_side); }
@@ -168,8 +174,17 @@ void ScanTracker::integrate() {
   input.camera = camera_;
   input.roi = {0, 0, camera_.width, camera_.height};
   input.depth_m = depth_.levels[0].z;
+  if (take_color()) input.color = color_;
   fused_ =
       st::integrate(volume_, input, camera_now_.T_world_camera.inverse(), kIntegrate, integrate_scratch_);
+}
+
+// False when this frame has no colour.
+bool ScanTracker::take_color() {
+  if (!calibration_.has_color || input_->color.empty()) return false;
+  const Pose T_then_now = motion_.moved_within(input_->color_device_t_s - input_->device_t_s).inverse();
+  return color_frame(calibration_, {input_->color}, to_float(T_then_now), depth_.levels[0].z, camera_,
+                     color_);
 }
 
 void ScanTracker::decide() {

@@ -8,7 +8,7 @@
 #include "algo/tracking/camera_align.hpp"
 #include "algo/tracking/camera_judge.hpp"
 #include "algo/tracking/camera_motion.hpp"
-#include "algo/tracking/observe.hpp"
+#include "algo/tracking/color_frame.hpp"
 #include "algo/tracking/places.hpp"
 #include "algo/volume/integrate.hpp"
 #include "algo/volume/raycast.hpp"
@@ -57,6 +57,7 @@ class ScanTracker {
   void place_volume();
   Pose place_to_try() const;
   CameraPrior prior() const;
+  bool take_color();
   bool upright(const Pose& T_world_camera) const;
   void learn_up();
   void follow();
@@ -71,6 +72,7 @@ class ScanTracker {
   Pinhole camera_;
   DepthTables tables_;
   DepthPyramid depth_;
+  ImageView<std::uint32_t> color_;  // of the frame that is fused, in the depth camera's pixels
   const FrameInput* input_ = nullptr;
   std::uint64_t frames_ = 0;
 

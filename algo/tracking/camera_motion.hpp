@@ -30,6 +30,11 @@ class CameraMotion {
     known_ = false;
     take(t_s, T_world_camera);
   }
+  // T_now_then: how the camera moves on within `dt_s` (either sign) at its present speed.
+  Pose moved_within(double dt_s) const {
+    if (!moving_) return {};
+    return {rotation_from_vector(velocity_.w * dt_s), T_.R.transposed() * (velocity_.v * dt_s)};
+  }
   // The pose just taken is doubtful: the speed that it implies fades, so that it does not carry the camera
   // off.
   void slow() { velocity_ = {velocity_.v * kFading, velocity_.w * kFading}; }
