@@ -67,7 +67,8 @@ TEST(Scene, EveryOneRendersAndShowsItsRobotWhereTheTruthSays) {
       rig.color_frame(t, 1, f.rgb.data());
       int valid = 0;
       for (const std::uint16_t r : f.raw) valid += r != DepthSensor::kNoReading ? 1 : 0;
-      CHECK_TEXT(valid > 0.4 * 640 * 480, name);
+      // A camera in a hand may look away for a while, after its first seconds.
+      if (!s.camera_motion || t < 3) CHECK_TEXT(valid > 0.4 * 640 * 480, name);
       for (std::size_t i = 0; i < s.objects.size(); ++i) {
         Pose T_room_object;
         const Visibility seen = rig.visibility(f.depth())[i];
