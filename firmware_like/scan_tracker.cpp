@@ -177,6 +177,7 @@ void ScanTracker::integrate() {
   if (take_color()) input.color = color_;
   fused_ =
       st::integrate(volume_, input, camera_now_.T_world_camera.inverse(), kIntegrate, integrate_scratch_);
+  count_.bricks_fused += fused_.bricks;
 }
 
 // False when this frame has no colour.
@@ -204,6 +205,7 @@ void ScanTracker::decide() {
       prove();
       break;
   }
+  count_.pixels_aligned += static_cast<double>(aligned_.pixels_visited);
   const bool good = camera_now_.state == TrackState::kGood;
   ++(good ? count_.tracked : count_.lost);
   count_.good_at_end = good;

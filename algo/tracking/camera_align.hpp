@@ -34,6 +34,7 @@ struct CameraAlignResult {
   int inliers = 0;   // within three sigma
   double rms_m = 0;  // of the inliers
   int iterations = 0;
+  long pixels_visited = 0;        // over all iterations
   double data_information[36]{};  // of the pose by depth alone; view's camera axes, rotation about its centre
 };
 

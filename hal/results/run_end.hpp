@@ -29,8 +29,8 @@ struct ObjectEnd {
 struct CameraEnd {
   std::uint64_t tracked = 0, lost = 0;  // frames with a row in camera.tum, and without
   bool good_at_end = false;
-  double path_length_m = 0;
-  MeshView scene;  // world frame; empty when the mesh was skipped
+  double pixels_aligned = 0, bricks_fused = 0;  // sums over all frames: what the work was
+  MeshView scene;                               // world frame; empty when the mesh was skipped
 };
 
 struct RunInfo {  // known at the start
