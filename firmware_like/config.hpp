@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <string>
 
+#include "algo/core/fixed_vector.hpp"
+#include "algo/core/polygon.hpp"
+
 namespace st {
 
 enum class TrackerKind { kStar, kFrameToFrame, kListing1 };
@@ -25,8 +28,12 @@ struct LoopConfig {
       0;  // frame-to-frame: 0 never, else a keyframe is kept for so many frames (calibration stage)
   int volume_side = 0;  // voxels a side of each volume; 0: 128 for an object, 256 for a scene
   ScanPlace place;      // scan mode
-  bool use_contour = true, use_color = true, use_floor = true, use_motion = true;
-  double seconds = 0;  // stop after so much recorded (or live) time; 0: at the end
+  // No track starts outside; empty: anywhere. On the floor, from the point below the camera: x along its axis
+  // laid on the floor, y to the left.
+  FixedVector<PlanePoint, 16> arena;
+  bool use_contour = true, use_color = true, use_floor = true, use_motion = true, use_wheels = true;
+  double camera_lag_s = 0;  // the camera's delay beyond that of the wheels' reports (calibrated)
+  double seconds = 0;       // stop after so much recorded (or live) time; 0: at the end
 };
 
 }  // namespace st

@@ -8,12 +8,17 @@ namespace {
 constexpr int kWait_ms = 100;     // how often a waiting loop looks for a signal
 constexpr int kSilentWaits = 50;  // five seconds without a frame from a live source: it is gone
 
+double wheel_base_m(const LoopParts& parts) {
+  return parts.driver != nullptr ? parts.driver->wheel_base_m() : parts.source.info().wheel_base_m;
+}
+
 }  // namespace
 
 Loop::Loop(const LoopParts& parts, const LoopConfig& config)
     : parts_(parts),
-      config_(config),
       stages_(parts.clock),
+      wheels_(wheel_base_m(parts), config.camera_lag_s),
+      config_(config),
       degradation_(parts.source.info().frame_period_s) {}
 
 double Loop::now_s() const { return static_cast<double>(parts_.clock.monotonic_ns()) * 1e-9; }
@@ -41,6 +46,8 @@ bool Loop::acquire() {
     }
     break;
   }
+  if (parts_.driver != nullptr) parts_.driver->listen(input_.odometry);
+  if (wheel_base_m(parts_) > 0) wheels_.take(input_);
   if (frames_ == 0) first_t_s_ = input_.t_s;
   if (config_.seconds > 0 && input_.t_s - first_t_s_ > config_.seconds) return stop(LoopEnd::kTimeUp);
   report_ = FrameReport{};
@@ -71,6 +78,10 @@ void Loop::publish() {
   parts_.budget.count(report_);
   if (parts_.source.info().live) degradation_.next(report_.cpu_us);
   parts_.telemetry.offer(report_);
+  if (parts_.server == nullptr) return;
+  served_.report = report_;
+  if (parts_.driver != nullptr) served_.robot = parts_.driver->served();
+  parts_.server->offer(served_);
 }
 
 }  // namespace st

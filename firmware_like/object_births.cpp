@@ -51,10 +51,16 @@ void ObjectTracker::drop_fragments(const Rect& box) {
   }
 }
 
+bool ObjectTracker::in_arena(const Vec3& p_camera) const {
+  if (config_.arena.empty()) return true;
+  const Vec3 p = support_.R_camera_floor.transposed() * p_camera;
+  return is_inside({config_.arena.begin(), config_.arena.size()}, p.x, p.y);
+}
+
 // Something that stood there from the first frame has just begun to move. What it looked like at rest,
 // averaged over the learning frames, is the best first frame there is, and no hand touched it yet.
 void ObjectTracker::begin_released() {
-  if (!segmentation_->has_released) return;
+  if (!segmentation_->has_released || !in_arena(to_double(segmentation_->released.centroid_m))) return;
   const ReleasedProto& released = segmentation_->released;
   const Rect box = released.box.clipped(rest_z_.width, rest_z_.height);
   fill_rest(box);
@@ -69,7 +75,7 @@ void ObjectTracker::begin_released() {
     for (int u = box.u0; u < box.u1; ++u) {
       if (!(rest_z_(u, v) > 0) || seen++ % every != 0) continue;
       points[used].p = frame_.camera.ray(static_cast<float>(u), static_cast<float>(v)) * rest_z_(u, v);
-      points[used++].luminance = -1;
+      ++used;
     }
   }
   if (used < kLeastPoints) return;
@@ -92,6 +98,7 @@ void ObjectTracker::begin_released() {
 // False: it has to wait for a slot, or is not worth one.
 bool ObjectTracker::begin_from_pixels(const Unexplained& what) {
   // Ragged things are hardly more than edges: nobody makes room for them.
+  if (!in_arena(to_double(what.centroid))) return false;
   const int solid =
       count_solid(frame_.depth_z, frame_.owners, kForeign, segmentation_->labels, what.label, what.box);
   if (solid < kLeastPoints) return false;
@@ -99,8 +106,8 @@ bool ObjectTracker::begin_from_pixels(const Unexplained& what) {
   if (k == kMaxObjects) return false;
   Track& track = tracks_[k];
   claim_pixels(what, k);
-  track.motion = MotionFilter{};  // how it moves is not known
-  observe(track, k, what.box, true);
+  track.aligned = AlignResult{};  // how it moves is not known
+  observe(track, k, what.box);
   if (track.points_used < kLeastPoints) return false;
   start_track(track, find_footprint(points_of(k).first(track.points_used), support_), support_,
               frame_.input->device_t_s);

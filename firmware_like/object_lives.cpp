@@ -157,7 +157,7 @@ void ObjectTracker::decide_lives(const LadderStep& step) {
   }
   drop_doubles();
   begin_released();
-  search_step(step.search_tries);
+  search_step(step);
   begin_tracks();
   confirm_proven();
   freeze_background();

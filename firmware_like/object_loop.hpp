@@ -15,6 +15,7 @@ class ObjectLoop final : public Loop {
 
  private:
   void drive();
+  DriverView driver_view() const;
 
   ObjectTracker& tracker_;
 };

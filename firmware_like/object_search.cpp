@@ -28,11 +28,14 @@ double ObjectTracker::try_pose(Track& track, const Pose& T_camera_object, bool t
   render_one(track, T_camera_object);
   if (track.view_pixels < kLeastPoints) return 0;
   track.points_used = gather_near_view(frame_.depth_z, frame_.owners, searched_owner(), track.view,
-                                       frame_.camera, colors_of(track), points_of(search_.track));
+                                       frame_.camera, points_of(search_.track));
   if (track.points_used < kLeastPoints) return 0;
   AlignInput in = alignment_of(track, search_.track);
   in.start = T_camera_object;
   in.pivot = T_camera_object.t;
+  in.color_time = {Pose{}, {support_.R_camera_floor.transposed()}};
+  if (search_.where == Search::Where::kRival)
+    in.color_time.motion = tracks_[search_.rival].motion.motion_over(frame_.color_lag_s);
   in.terms.motion = !turn;
   in.terms.contour = false;
   in.prior = {T_camera_object, {}};
@@ -117,7 +120,7 @@ bool ObjectTracker::start_search_in(const Unexplained& what, std::size_t k) {
   const bool refused = known != nullptr && (known->refused_by >> k & 1u) != 0;
   if (!refused) {
     const std::size_t used = gather_points(frame_.depth_z, segmentation_->labels, what.label, what.box,
-                                           frame_.camera, {}, points_of(k));
+                                           frame_.camera, points_of(k));
     if (used >= kLeastPoints &&
         size_fits(track.bounds, find_footprint(points_of(k).first(used), support_).bounds,
                   what.touches_border)) {
@@ -178,7 +181,6 @@ std::size_t ObjectTracker::claim_searched() {
   if (search_.where == Search::Where::kRival) {
     const Track& rival = tracks_[search_.rival];
     search_.running = rival.phase == Track::Phase::kCandidate;
-    track.colored = rival.colored;
     for (std::size_t i = 0; search_.running && i < rival.points_used; ++i)
       points_of(k)[i] = points_of(search_.rival)[i];
     return search_.running ? rival.points_used : 0;
@@ -196,7 +198,7 @@ std::size_t ObjectTracker::claim_searched() {
   else
     claim_pixels(*segment, k);
   track.motion.rest();  // how it moves now is not known
-  observe(track, k, segment->box, true);
+  observe(track, k, segment->box);
   return track.points_used;
 }
 
@@ -213,7 +215,7 @@ Pose ObjectTracker::search_anchor(const Footprint& footprint) const {
   }
 }
 
-void ObjectTracker::search_step(int tries) {
+void ObjectTracker::search_step(const LadderStep& step) {
   if (!search_.running) start_search();
   if (!search_.running) return;
   const std::size_t used = claim_searched();
@@ -221,6 +223,9 @@ void ObjectTracker::search_step(int tries) {
   Track& track = tracks_[search_.track];
   const Footprint footprint = find_footprint(points_of(search_.track).first(used), support_);
   const Pose anchor = search_anchor(footprint);
+  const Rect box = search_.where == Search::Where::kRival ? owned_[search_.rival].box : search_.box;
+  look_at_colors(box.grown(frame_.depth_z.width / 8).clipped(frame_.depth_z.width, frame_.depth_z.height),
+                 step);
   if (search_.next_yaw == kSearchYaws) {
     Search::Found& tried = search_.best[search_.refined++];
     refine(tried, anchor);
@@ -232,10 +237,9 @@ void ObjectTracker::search_step(int tries) {
     return;
   }
   const bool in_place = search_.where == Search::Where::kInPlace;
-  const Rect box = search_.where == Search::Where::kRival ? owned_[search_.rival].box : search_.box;
   const HiddenSide hidden =
       hidden_side(frame_.depth_z, frame_.owners, searched_owner(), box, segmentation_->view);
-  for (int i = 0; i < tries && search_.next_yaw < kSearchYaws; ++i, ++search_.next_yaw) {
+  for (int i = 0; i < step.search_tries && search_.next_yaw < kSearchYaws; ++i, ++search_.next_yaw) {
     const double yaw = 2.0 * kPi * search_.next_yaw / kSearchYaws;
     const Pose start = in_place ? turned_in_place(track, support_, yaw)
                                 : hypothesis(track, footprint, support_, yaw, hidden);

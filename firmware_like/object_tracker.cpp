@@ -51,6 +51,8 @@ void ObjectTracker::bind_images(Bump& memory) {
   frame_.bind(memory, width, height);
   rest_z_ = {memory.take<float>(n).data(), width, height};
   registered_color_ = {memory.take<std::uint32_t>(n).data(), width, height};
+  const Intrinsics& color = calibration_.color_registered ? calibration_.depth : calibration_.color;
+  color_frame_.bind(memory, color.width, color.height);
 }
 
 void ObjectTracker::bind_segmenter(Bump& memory) { segmenter_.bind(memory, calibration_); }
@@ -117,8 +119,13 @@ void ObjectTracker::update_support() {
 }
 
 void ObjectTracker::predict() {
-  for (Track& track : tracks_)
-    if (track.active()) track.motion.predict(frame_.input->device_t_s, MotionNoise{});
+  for (Track& track : tracks_) {
+    if (!track.active()) continue;
+    const MotionNoise noise = ask_wheels(track)          ? kWheeledNoise
+                              : track.drive.recognised() ? kDrivingNoise
+                                                         : MotionNoise{};
+    track.motion.predict(frame_.input->device_t_s, noise);
+  }
 }
 
 void ObjectTracker::render_one(Track& track, const Pose& T) {
@@ -167,17 +174,19 @@ AlignInput ObjectTracker::alignment_of(const Track& track, std::size_t k) const 
   in.prior = track.motion.prior();
   in.start = in.prior.mean;
   in.pivot = in.prior.mean.t;
+  in.color_time = track.motion.color_time(frame_.color_lag_s);
   in.floor.on = track.planar && support_.found && config_.use_floor;
   in.floor.up_camera = support_.up;
   in.floor.d = support_.d;
-  in.terms = {config_.use_contour, config_.use_color && track.colored, config_.use_floor, config_.use_motion};
+  in.terms = {config_.use_contour, config_.use_floor, config_.use_motion};
+  if (config_.use_color && !color_frame_.empty()) in.color = &color_frame_;
   const double sigma = 2.0 * track.motion.position_sigma_m();
   in.largest_start_error_m = sigma < 0.02 ? 0.02 : sigma > 0.08 ? 0.08 : sigma;
   return in;
 }
 
 void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& step) {
-  observe(track, k, owned_[k].box, step.color_term);
+  observe(track, k, owned_[k].box);
   track.aligned = AlignResult{};
   if (track.points_used < kLeastPoints || track.view_pixels < kLeastPoints) return;
   AlignInput in = alignment_of(track, k);
@@ -189,25 +198,31 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
   }
   expect_heading(track, in);
   track.aligned = align(in, scratch_);
+  if (step.point_stride == 1) look_beside(track, in, k);
   defend_heading(track, in);
   if (in.floor.on && step.point_stride == 1) leave_floor(track, in);
 }
 
-// Collects the track's pixels and gives them their colours, as they were when the depth was taken.
-void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box, bool with_color) {
+void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box) {
   const std::uint8_t owner = static_cast<std::uint8_t>(k + 1);
-  track.colored = frame_.has_color && with_color;
-  if (track.colored)
-    register_color(registration_, frame_.color, to_float(track.motion.smooth_motion_over(frame_.color_lag_s)),
-                   frame_.depth_z, frame_.owners, owner, box, frame_.camera, registered_color_);
   mark_edges(frame_.depth_z, owner, box, frame_.owners);
-  track.points_used =
-      gather_points(frame_.depth_z, frame_.owners, owner, box, frame_.camera, colors_of(track), points_of(k));
+  track.points_used = gather_points(frame_.depth_z, frame_.owners, owner, box, frame_.camera, points_of(k));
 }
 
-// The registered image holds colours of this frame only where they were taken over; elsewhere old ones.
-ImageView<std::uint32_t> ObjectTracker::colors_of(const Track& track) const {
-  return track.colored ? registered_color_ : ImageView<std::uint32_t>{};
+// The part of the colour image that the depth image's `box` may appear in.
+void ObjectTracker::look_at_colors(const Rect& box, const LadderStep& step) {
+  color_frame_.roi = {0, 0, 0, 0};
+  if (frame_.has_color && step.color_term)
+    build_color_frame(registration_, frame_.color, frame_.camera, box, color_frame_);
+}
+
+// The colours of the track's pixels in this frame, as it was when the colour image was taken; empty where
+// there are none.
+ImageView<std::uint32_t> ObjectTracker::register_colors(std::size_t k, const Rect& box) {
+  if (!frame_.has_color) return {};
+  register_color(registration_, frame_.color, to_float(tracks_[k].aligned.color_motion), frame_.depth_z,
+                 frame_.owners, static_cast<std::uint8_t>(k + 1), box, frame_.camera, registered_color_);
+  return registered_color_;
 }
 
 // A hand that takes hold of an object hangs together with it. Meanwhile neither pixels beside the model, as
@@ -240,7 +255,7 @@ void ObjectTracker::fuse(Track& track, std::size_t k) {
   evidence.depth_m = frame_.depth_z;
   evidence.owners = frame_.owners;
   evidence.object = static_cast<std::uint8_t>(k + 1);
-  evidence.color = colors_of(track);
+  evidence.color = register_colors(k, evidence.roi);
   note_integrated(track, integrate(track.volume, evidence, track.T_camera_object, IntegrateOptions{},
                                    integrate_scratch_));
 }
@@ -275,6 +290,13 @@ void ObjectTracker::note_integrated(Track& track, const IntegrateStats& stats) {
 }
 
 void ObjectTracker::align_all(const LadderStep& step) {
+  Rect seen = Rect::nothing();
+  for (std::size_t k = 0; k < kMaxObjects; ++k) {
+    if (!tracks_[k].active()) continue;
+    seen.include(owned_[k].box);
+    seen.include(tracks_[k].view.maps.roi);
+  }
+  look_at_colors(seen.clipped(frame_.depth_z.width, frame_.depth_z.height), step);
   for (std::size_t k = 0; k < kMaxObjects; ++k)
     if (tracks_[k].active()) align_one(tracks_[k], k, step);
 }
@@ -293,9 +315,14 @@ void ObjectTracker::judge_one(Track& track) {
     return;
   }
   if (!track.planar) return_to_floor(track);
-  track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
+  track.yaw_source = yaw_source_of(track.aligned, support_.up);
+  judge_wheels(track);
+  if (track.aligned.color.used > 0)
+    track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance, track.aligned.color_rest,
+                         frame_.color_lag_s);
+  else
+    track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
   track.T_camera_object = track.aligned.T_camera_object;
-  for (int i = 0; i < 36; ++i) track.covariance[i] = track.aligned.covariance[i];
   track.state = TrackState::kGood;
   track.poor_run = 0;
   ++track.good_poses;
@@ -303,13 +330,13 @@ void ObjectTracker::judge_one(Track& track) {
   track.T_last_good = track.T_camera_object;
   if (track.planar && support_.found)
     track.drive.add(frame_.input->device_t_s, support_.on_floor(track.T_camera_object), track.heading_doubt);
-  track.yaw_source = yaw_source_of(track.aligned, support_.up);
   track.has_moved = track.has_moved || moved_since_birth(track);
 }
 
 void ObjectTracker::judge_all() {
   for (Track& track : tracks_)
     if (track.active()) judge_one(track);
+  match_wheels();
 }
 
 void ObjectTracker::integrate_all(const LadderStep& step) {
@@ -336,7 +363,7 @@ void ObjectTracker::remember(const Track& track, std::size_t k) {
   if (++previous_[k].age <= config_.keyframe_every) return;
   const Rect box = image_box(track.bounds, track.T_camera_object, frame_.camera, kViewMargin_px);
   remember_frame(previous_[k], frame_.depth_z, frame_.owners, static_cast<std::uint8_t>(k + 1), box,
-                 frame_.camera, colors_of(track), track.T_camera_object);
+                 frame_.camera, register_colors(k, box), track.T_camera_object);
 }
 
 }  // namespace st

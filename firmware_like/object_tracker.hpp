@@ -2,6 +2,7 @@
 // one stage of the loop; they run in the order in which they stand here. All memory is bound once.
 #pragma once
 
+#include "algo/control/start_motion.hpp"
 #include "algo/core/bump.hpp"
 #include "algo/segmentation/segmenter.hpp"
 #include "algo/tracking/associate.hpp"
@@ -10,6 +11,7 @@
 #include "algo/tracking/make_room.hpp"
 #include "algo/tracking/recover.hpp"
 #include "algo/tracking/track.hpp"
+#include "algo/tracking/way_match.hpp"
 #include "algo/volume/integrate.hpp"
 #include "firmware_like/config.hpp"
 #include "firmware_like/degradation.hpp"
@@ -52,6 +54,7 @@ class ObjectTracker {
   void judge_all();
   void integrate_all(const LadderStep& step);
   void decide_lives(const LadderStep& step);  // confirm, lose, find again, begin, evict
+  void see(SeenObjects& objects) const;       // the confirmed ones, for whoever steers by them
   void publish(FrameReport& report);
 
   // For the end of a run.
@@ -76,17 +79,22 @@ class ObjectTracker {
   void bind_integration(Bump& memory);
 
   void update_support();
+  bool ask_wheels(Track& track);
+  void judge_wheels(Track& track);
+  void match_wheels();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
   void judge_one(Track& track);
   void expect_heading(Track& track, AlignInput& in) const;
+  void look_beside(Track& track, const AlignInput& in, std::size_t k);
   void defend_heading(Track& track, const AlignInput& in);
   void leave_floor(Track& track, const AlignInput& held);
   void return_to_floor(Track& track);
   AlignInput alignment_of(const Track& track, std::size_t k) const;
   std::span<ObservedPoint> points_of(std::size_t k);
   void render_one(Track& track, const Pose& T);
-  void observe(Track& track, std::size_t k, const Rect& box, bool with_color);
-  ImageView<std::uint32_t> colors_of(const Track& track) const;
+  void observe(Track& track, std::size_t k, const Rect& box);
+  void look_at_colors(const Rect& box, const LadderStep& step);
+  ImageView<std::uint32_t> register_colors(std::size_t k, const Rect& box);
   void keep_shape(const Track& track, std::size_t k);
   void fuse(Track& track, std::size_t k);
   void remember(const Track& track, std::size_t k);
@@ -97,7 +105,7 @@ class ObjectTracker {
   bool is_proven(const Track& candidate) const;
   void confirm_proven();
   void lose(Track& track);
-  void search_step(int tries);
+  void search_step(const LadderStep& step);
   void start_search();
   bool start_search_in(const Unexplained& what, std::size_t k);
   bool start_search_in_candidate(std::size_t j, std::size_t k);
@@ -112,6 +120,7 @@ class ObjectTracker {
   void refuse(const Rect& box, std::size_t k);
   void fill_rest(const Rect& box);
   void drop_fragments(const Rect& box);
+  bool in_arena(const Vec3& p_camera) const;
   void begin_released();
   bool is_looked_for_in(const Unexplained& what) const;
   void begin_tracks();
@@ -133,6 +142,8 @@ class ObjectTracker {
   Frame frame_;
   Segmenter segmenter_;
   const Segmentation* segmentation_ = nullptr;
+  WayMatch went_along_;  // with the wheels of the robot, if one is connected
+  int wheeled_id_ = 0;   // the object that does; 0: none
   ColorRegistration registration_;
   Support support_;
   bool support_frozen_ = false;
@@ -147,6 +158,7 @@ class ObjectTracker {
   AlignScratch scratch_;
   FrameViewMemory previous_[kMaxObjects];  // frame-to-frame mode: the view of the frame before
   ModelCloud clouds_[kMaxObjects];         // listing1 mode: the models as points
+  ColorFrame color_frame_;                 // of where the objects are, or where one is searched
   ImageView<float> rest_z_;
   ImageView<std::uint32_t> registered_color_;  // of the objects' pixels, pack_rgb
   IntegrateScratch integrate_scratch_;

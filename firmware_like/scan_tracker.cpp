@@ -184,8 +184,8 @@ void ScanTracker::integrate() {
 bool ScanTracker::take_color() {
   if (!calibration_.has_color || input_->color.empty()) return false;
   const Pose T_then_now = motion_.moved_within(input_->color_device_t_s - input_->device_t_s).inverse();
-  return color_frame(calibration_, {input_->color}, to_float(T_then_now), depth_.levels[0].z, camera_,
-                     color_);
+  return frame_colors(calibration_, {input_->color}, to_float(T_then_now), depth_.levels[0].z, camera_,
+                      color_);
 }
 
 void ScanTracker::decide() {

@@ -8,7 +8,7 @@
 #include "algo/tracking/camera_align.hpp"
 #include "algo/tracking/camera_judge.hpp"
 #include "algo/tracking/camera_motion.hpp"
-#include "algo/tracking/color_frame.hpp"
+#include "algo/tracking/frame_colors.hpp"
 #include "algo/tracking/places.hpp"
 #include "algo/volume/integrate.hpp"
 #include "algo/volume/raycast.hpp"

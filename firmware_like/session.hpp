@@ -16,6 +16,8 @@ struct SessionOptions {
   RobotOptions robot;  // port empty: no robot
   Reaction on_bump = Reaction::kEnd;
   std::string path_file;  // empty: no path
+  bool closed_loop = false;
+  std::string serve;  // [HOST:]PORT for clients; empty: none
   LoopConfig loop;
   std::string tracker_name = "star";
   std::string out;  // run folder; empty: runs/DATE-TIME-SOURCE

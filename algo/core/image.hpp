@@ -37,6 +37,11 @@ struct Rect {
     if (u + 1 > u1) u1 = u + 1;
     if (v + 1 > v1) v1 = v + 1;
   }
+  constexpr void include(const Rect& other) {
+    if (other.empty()) return;
+    include(other.u0, other.v0);
+    include(other.u1 - 1, other.v1 - 1);
+  }
   // The empty rectangle that include() can start from.
   static constexpr Rect nothing() { return {1 << 30, 1 << 30, -(1 << 30), -(1 << 30)}; }
 };

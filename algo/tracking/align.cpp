@@ -75,6 +75,14 @@ void add_heading_prior(const AlignInput& in, const Pose& T, NormalEquations& eq)
          1.0 / (kOverlappingChords * in.heading.sigma_rad * in.heading.sigma_rad));
 }
 
+void add_shift_prior(const double (&shift_px)[2], NormalEquations& eq) {
+  constexpr double kInformation = 1.0 / (kShiftSigma_px * kShiftSigma_px);
+  for (int k = 0; k < 2; ++k) {
+    eq.H[(6 + k) * kN + 6 + k] += kInformation;
+    eq.g[6 + k] += kInformation * shift_px[k];
+  }
+}
+
 void copy_pose_block(const double (&full)[kN * kN], double (&pose)[36]) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) pose[6 * i + j] = full[kN * i + j];
@@ -92,6 +100,18 @@ void marginal_information(const NormalEquations& eq, double (&pose)[36]) {
       const double iu = eq.H[i * kN + 6], iv = eq.H[i * kN + 7], ju = eq.H[j * kN + 6], jv = eq.H[j * kN + 7];
       pose[6 * i + j] -= (iu * (d * ju - b * jv) + iv * (a * jv - b * ju)) / det;
     }
+}
+
+// A round thing's noise stands still in the image while it turns, and its model has learned that noise: the
+// turn that shape sees is partly its own. Where colour sees the turn, shape must not hold against it: it may
+// be off by so many of its own sigmas.
+constexpr double kOwnTurn = 3.0;
+
+double own_turn_rad(NormalEquations shape, const PoseTie& axes) {
+  shape.mirror();
+  double information[36];
+  copy_pose_block(shape.H, information);
+  return kOwnTurn * turn_sigma_rad(information, axes.R_frame_camera.transposed() * Vec3{0, 0, 1});
 }
 
 struct Step {
@@ -122,11 +142,15 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
   Pose T = in.start;
   double shift_px[2] = {0, 0};
   const ContourTermOptions contour_options;
-  NormalEquations shape, data, all;
+  NormalEquations shape, colour, data, all;
   build_view_table(in.view, scratch.view);
   arrange_points(in.points, PointTable::kMost / static_cast<std::size_t>(in.point_stride), scratch.points);
   std::size_t outline_count = 0, contour_count = 0;
   if (in.terms.contour) outline_count = find_outline(scratch.view, in.camera, scratch.outline);
+
+  const bool sees_color = in.color != nullptr && !in.color->empty();
+  PoseTie own_turn;
+  own_turn.R_frame_camera = in.color_time.tie.R_frame_camera;
 
   for (std::size_t l = 0; l < std::size(kLevels) && static_cast<int>(l) < in.levels; ++l) {
     const Level& level = kLevels[l];
@@ -136,33 +160,42 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
     depth_options.gate_m = static_cast<float>(open > level.gate_m ? open : level.gate_m);
     depth_options.robust_sigmas = level.robust_sigmas;
     const ColorTermOptions color_options;
-    const bool use_color = in.terms.color && level.color;
+    const bool use_color = sees_color && level.color;
 
-    const Pose D0 = T * in.view.T_camera_object.inverse();
+    const Pose T_view_inverse = in.view.T_camera_object.inverse();
+    const Pose D0 = T * T_view_inverse;
     if (in.terms.contour)
       contour_count = find_contour({scratch.outline, outline_count}, in.camera, in.depth_z, D0,
                                    contour_options, scratch.contour);
-    if (use_color)
-      result.gain = fit_color_gain(scratch.points, count, scratch.view, in.camera, D0, color_options);
+    const Vec3 pivot_then = in.color_time.motion * in.pivot;
+    const auto look = [&] {
+      return ColorLook{scratch.color_points,
+                       scratch.color_points.prefix(level.points / static_cast<std::size_t>(in.point_stride)),
+                       *in.color, pose_then(in.color_time, in.prior.mean, T, in.pivot) * T_view_inverse};
+    };
+    if (use_color) {
+      collect_color_points(scratch.view, in.camera, in.depth_z, D0, color_options,
+                           PointTable::kMost / static_cast<std::size_t>(in.point_stride),
+                           scratch.color_points);
+      result.gain = fit_color_gain(look());
+    }
 
     for (int i = 0; i < level.iterations; ++i) {
-      const Pose D = T * in.view.T_camera_object.inverse();
+      const Pose D = T * T_view_inverse;
       shape = NormalEquations{};
       result.depth =
           add_depth_term(scratch.points, count, scratch.view, in.camera, D, in.pivot, depth_options, shape);
       if (in.terms.contour)
         result.contour_used =
             add_contour_term({scratch.contour, contour_count}, in.camera, D, contour_options, shape);
-      data = shape;
+      colour = NormalEquations{};
       if (use_color)
-        result.color = add_color_term(scratch.points, count, scratch.view, in.camera, D, in.pivot,
-                                      result.gain, shift_px, color_options, data);
-      for (int k = 0; k < 2; ++k) {
-        const double w = 1.0 / (kShiftSigma_px * kShiftSigma_px);
-        data.H[(6 + k) * kN + 6 + k] += w;
-        data.g[6 + k] += w * shift_px[k];
-      }
-      all = data;
+        result.color = add_color_term(look(), pivot_then, result.gain, shift_px, color_options, colour);
+      if (i == 0) own_turn.sigma[5] = sees_color ? own_turn_rad(shape, own_turn) : 0;
+      all = NormalEquations{};
+      add_tied(shape, own_turn, all);
+      result.color_rest = add_tied(colour, in.color_time.tie, all);
+      add_shift_prior(shift_px, all);
       if (in.terms.motion) add_motion_prior(in, T, all);
       if (in.terms.motion && in.heading.on) add_heading_prior(in, T, all);
       if (in.terms.floor && in.floor.on) add_floor_prior(in, T, all);
@@ -177,6 +210,10 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
     }
   }
   result.T_camera_object = T;
+  result.color_motion = pose_then(in.color_time, in.prior.mean, T, in.pivot, result.color_rest) * T.inverse();
+  data = shape;
+  data.add(colour);
+  add_shift_prior(shift_px, data);
   shape.mirror();
   data.mirror();
   copy_pose_block(shape.H, result.shape_information);

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "algo/tracking/color_term.hpp"
+#include "algo/tracking/color_time.hpp"
 #include "algo/tracking/contour_term.hpp"
 #include "algo/tracking/depth_term.hpp"
 #include "algo/tracking/model_view.hpp"
@@ -36,7 +37,7 @@ struct HeadingPrior {
 };
 
 struct AlignTerms {
-  bool contour = true, color = true, floor = true, motion = true;
+  bool contour = true, floor = true, motion = true;
 };
 
 struct AlignInput {
@@ -48,7 +49,9 @@ struct AlignInput {
   Vec3 pivot;  // camera frame
   MotionPrior prior;
   FloorPrior floor;
-  HeadingPrior heading;  // counts where terms.motion does, and with a floor
+  const ColorFrame* color = nullptr;  // null: no colour term
+  ColorTime color_time;               // its tie's frame has its z axis up
+  HeadingPrior heading;               // counts where terms.motion does, and with a floor
   AlignTerms terms;
   double largest_start_error_m = 0.03;  // sets the coarsest gate
   int point_stride = 1;                 // a late loop looks at fewer points
@@ -61,23 +64,26 @@ struct AlignResult {
   DepthTermResult depth;  // at the last iteration, all points
   ColorTermResult color;
   ColorGain gain;
+  TieRest color_rest;
+  Pose color_motion;  // p in the depth image is at color_motion * p in the colour image's time, camera frame
   int contour_used = 0;
   int iterations = 0;
   double covariance[36]{};         // of the pose, all terms; camera axes, rotation about the pivot
-  double data_information[36]{};   // depth, contour and colour
+  double data_information[36]{};   // depth, contour and colour, as if of the same time
   double shape_information[36]{};  // depth and contour alone
 };
 
 // Work memory of align(), owned by the caller.
 struct AlignScratch {
   ViewTable view;
-  PointTable points;
+  PointTable points, color_points;
   OutlinePoint outline[kMaxContourPoints];
   ContourPoint contour[kMaxContourPoints];
 
   void bind(Bump& memory, int max_width, int max_height) {
     view.bind(memory, max_width, max_height);
     points.bind(memory);
+    color_points.bind(memory);
   }
 };
 

@@ -34,8 +34,7 @@ int count_same_surface(const A& a, const B& b, const Rect& box, float near_m) {
 
 // A pixel of the object in the present frame.
 struct ObservedPoint {
-  Vec3f p;               // camera frame, metres
-  float luminance = -1;  // of the colour image at this point, 0-255; negative: none
+  Vec3f p;  // camera frame, metres
   std::uint16_t u = 0, v = 0;
 };
 

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace st {
+namespace {
+
+constexpr double kLeastOpen = 1e-9;
+
+}  // namespace
 
 void MotionFilter::start(const Pose& T_camera_object, const Mat3& R_reference_camera, double t_s) {
   pose_ = T_camera_object;
@@ -11,7 +16,8 @@ void MotionFilter::start(const Pose& T_camera_object, const Mat3& R_reference_ca
   t_s_ = corrected_t_s_ = t_s;
   corrected_ = T_camera_object;
   output_ = MotionOutput{};
-  for (int i = 0; i < 6; ++i) axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
+  step_s_ = 0;
+  for (int i = 0; i < 6; ++i) before_[i] = axis_[i] = i >= 3 ? kUnknownTurn : kUnknownPosition;
 }
 
 void MotionFilter::start_found(const Vec3& velocity_mps, const Vec3& angular_velocity_rps) {
@@ -40,19 +46,40 @@ void MotionFilter::set_turn_rate(double rate_rps) {
   output_.angular_velocity_rps.z = rate_rps;
 }
 
-Pose MotionFilter::motion_at(const Vec3& velocity_mps, const Vec3& angular_velocity_rps, double dt_s) const {
-  const Mat3 R_camera_reference = R_reference_camera_.transposed();
-  const Mat3 dR = rotation_from_vector(R_camera_reference * (angular_velocity_rps * dt_s));
-  const Vec3 v = R_camera_reference * (velocity_mps * dt_s);
-  return {dR, pose_.t + v - dR * pose_.t};
+void MotionFilter::turns_at(double rate_rps, double sigma_rps) {
+  axis_[5].rate = rate_rps;
+  axis_[5].pr = 0;
+  axis_[5].rr = sigma_rps * sigma_rps;
 }
 
 Pose MotionFilter::motion_over(double dt_s) const {
-  return motion_at(velocity_mps(), angular_velocity_rps(), dt_s);
+  const Mat3 R_camera_reference = R_reference_camera_.transposed();
+  const Mat3 dR = rotation_from_vector(R_camera_reference * (angular_velocity_rps() * dt_s));
+  const Vec3 v = R_camera_reference * (velocity_mps() * dt_s);
+  return {dR, pose_.t + v - dR * pose_.t};
 }
 
-Pose MotionFilter::smooth_motion_over(double dt_s) const {
-  return motion_at(output_.velocity_mps, output_.angular_velocity_rps, dt_s);
+// The value then is x + r s + a s^2 / 2 of the state before the step, s after it, with the acceleration a of
+// the step.
+MotionFilter::Then MotionFilter::then(int axis, double lag_s) const {
+  const Axis& a = before_[axis];
+  const double dt = step_s_, s = dt + lag_s, q = step_variance_[axis];
+  const double bend = s > 0 ? 0.5 * s * s : 0.0;
+  return {a.pp + 2 * s * a.pr + s * s * a.rr + bend * bend * q,
+          a.pp + (dt + s) * a.pr + dt * s * a.rr + 0.5 * dt * dt * bend * q, a.pr + s * a.rr + dt * bend * q};
+}
+
+ColorTime MotionFilter::color_time(double lag_s) const {
+  ColorTime time;
+  time.motion = motion_over(lag_s);
+  time.tie.R_frame_camera = R_reference_camera_;
+  for (int i = 0; i < 6; ++i) {
+    const Then t = then(i, lag_s);
+    time.tie.share[i] = t.with_value / axis_[i].pp;
+    const double rest = t.variance - time.tie.share[i] * t.with_value;
+    time.tie.sigma[i] = rest > 0 ? std::sqrt(rest) : 0;
+  }
+  return time;
 }
 
 void MotionFilter::predict(double t_s, const MotionNoise& noise) {
@@ -61,11 +88,14 @@ void MotionFilter::predict(double t_s, const MotionNoise& noise) {
   pose_ = motion_over(dt) * pose_;
   pose_.R = orthonormalized(pose_.R);
   t_s_ = t_s;
+  step_s_ = dt;
   for (int i = 0; i < 6; ++i) {
     Axis& a = axis_[i];
+    before_[i] = a;
     const double sigma = i < 3 ? noise.acceleration_mps2 : noise.turn_acceleration_rps2;
     // An acceleration that holds for a frame and then changes (piecewise constant).
     const double q = sigma * sigma;
+    step_variance_[i] = q;
     a.pp += 2 * dt * a.pr + dt * dt * a.rr + 0.25 * dt * dt * dt * dt * q;
     a.pr += dt * a.rr + 0.5 * dt * dt * dt * q;
     a.rr += dt * dt * q;
@@ -79,22 +109,36 @@ void MotionFilter::predict(double t_s, const MotionNoise& noise) {
   }
 }
 
+// The diagonal of the axes' values, or of their inverses, turned from the reference axes to the camera's.
+void MotionFilter::in_camera_axes(bool inverse, double (&out)[36]) const {
+  const Mat3& R = R_reference_camera_;
+  for (double& x : out) x = 0;
+  for (int block = 0; block < 6; block += 3)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < 3; ++k) {
+          const double pp = axis_[block + k].pp;
+          out[6 * (block + r) + block + c] += R(k, r) * R(k, c) * (inverse ? 1 / pp : pp);
+        }
+}
+
 MotionPrior MotionFilter::prior() const {
   MotionPrior prior;
   prior.mean = pose_;
-  // Rotate the diagonal information from the reference axes to the camera's.
-  const Mat3& R = R_reference_camera_;
-  for (int block = 0; block < 2; ++block)
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) {
-        double sum = 0;
-        for (int k = 0; k < 3; ++k) sum += R(k, r) * R(k, c) / axis_[3 * block + k].pp;
-        prior.information[6 * (3 * block + r) + 3 * block + c] = sum;
-      }
+  in_camera_axes(true, prior.information);
   return prior;
 }
 
+void MotionFilter::covariance(double (&out)[36]) const { in_camera_axes(false, out); }
+
 void MotionFilter::correct(const Pose& T_camera_object, const double (&covariance)[36]) {
+  correct(T_camera_object, covariance, TieRest{}, 0);  // of the same time: nothing is left open
+}
+
+// The rate is alpha times the value's deviation, plus beta times the rest of the colour image's, plus what
+// neither tells; value and rest are independent before the frame, and no more so after it.
+void MotionFilter::correct(const Pose& T_camera_object, const double (&covariance)[36], const TieRest& rest,
+                           double lag_s) {
   const Mat3& R = R_reference_camera_;
   const Vec3 moved = R * (T_camera_object.t - pose_.t);
   const Vec3 turned = R * rotation_to_vector(T_camera_object.R * pose_.R.transposed());
@@ -106,11 +150,18 @@ void MotionFilter::correct(const Pose& T_camera_object, const double (&covarianc
       for (int c = 0; c < 3; ++c)
         posterior += R(k, r) * covariance[6 * (3 * block + r) + 3 * block + c] * R(k, c);
     if (!(posterior > 0) || posterior > a.pp) posterior = a.pp;
+    const double alpha = a.pr / a.pp;
+    const Then t = then(i, lag_s);
+    const double share = t.with_value / a.pp, open = t.variance - share * t.with_value;
+    const bool blind = !(open > kLeastOpen * t.variance);  // the colour image is of the same time
+    const double beta = blind ? 0.0 : (t.with_rate - share * a.pr) / open;
+    const double joint = rest.slope[i] * posterior;
+    const double rest_variance = blind ? 0.0 : rest.variance[i] + rest.slope[i] * joint;
     const double shift = block == 0 ? moved[k] : turned[k];
-    const double gain = a.pr / a.pp, share = posterior / a.pp;
-    a.rate += gain * shift;
-    a.rr -= gain * a.pr * (1.0 - share);
-    a.pr *= share;
+    a.rate += alpha * shift + beta * rest.mean[i];
+    a.rr += alpha * alpha * (posterior - a.pp) + beta * beta * (rest_variance - (blind ? 0.0 : open)) +
+            2 * alpha * beta * joint;
+    a.pr = alpha * posterior + beta * joint;
     a.pp = posterior;
   }
   pose_ = T_camera_object;

@@ -9,11 +9,14 @@
 
 namespace st {
 
-// One-sigma accelerations of hands, legs and robots.
+// One-sigma accelerations: of hands and legs, and of what has been seen to drive on wheels.
 struct MotionNoise {
-  double acceleration_mps2 = 2.0;
+  double acceleration_mps2 = 1.0;
   double turn_acceleration_rps2 = 5.0;
 };
+inline constexpr MotionNoise kDrivingNoise{0.7, 5.0};
+// The same while the wheels tell the turn, which is then no matter of acceleration.
+inline constexpr MotionNoise kWheeledNoise{0.7, 0.3};
 
 // Smoothed rates for publishing, reference axes. First-order low-pass filters: velocity lags by 67 ms,
 // acceleration by 200 ms more at 30 frames a second.
@@ -37,6 +40,9 @@ class MotionFilter {
   // How fast it turns about the reference's z axis was wrong as well.
   void set_turn_rate(double rate_rps);
 
+  // How fast it turns about the reference's z axis until the next prediction's time, told by its wheels.
+  void turns_at(double rate_rps, double sigma_rps);
+
   // Moves the estimate on to time t_s.
   void predict(double t_s, const MotionNoise& noise);
 
@@ -46,6 +52,9 @@ class MotionFilter {
   // Takes the pose found by an alignment that already used prior(): its covariance (camera axes, about the
   // origin) is the posterior, so the rates follow by conditioning (no second use of the prior).
   void correct(const Pose& T_camera_object, const double (&covariance)[36]);
+  // The same where a colour image taken lag_s before or after said something beyond that.
+  void correct(const Pose& T_camera_object, const double (&covariance)[36], const TieRest& rest,
+               double lag_s);
 
   // Keeps the predicted pose and lets the rates fade: an object that nobody sees is not followed for long.
   void coast(double fade);
@@ -60,10 +69,11 @@ class MotionFilter {
   const MotionOutput& output() const { return output_; }
   // The object's motion over dt at the present rates, in the camera frame: p(t + dt) = motion * p(t).
   Pose motion_over(double dt_s) const;
-  // The same at the smoothed rates. A colour frame taken earlier is registered with these: the filter's own
-  // rates learn from that registration, and the two would wind each other up.
-  Pose smooth_motion_over(double dt_s) const;
+  // How the pose at t_s() + lag_s, the time of a colour image, hangs together with that at t_s().
+  ColorTime color_time(double lag_s) const;
   double position_sigma_m() const;
+  // Of the pose as it stands, row-major 6x6: position, then turn, camera axes.
+  void covariance(double (&out)[36]) const;
 
  private:
   struct Axis {
@@ -72,11 +82,20 @@ class MotionFilter {
   };
   static constexpr Axis kUnknownPosition{0, 0.01 * 0.01, 0, 0.5 * 0.5}, kUnknownTurn{0, 0.05 * 0.05, 0, 1.0};
   Axis axis_[6];
+  // Before the newest step of prediction, which took step_s_ with accelerations of these variances.
+  Axis before_[6];
+  double step_s_ = 0, step_variance_[6]{};
   Pose pose_;
   Mat3 R_reference_camera_;
   double t_s_ = 0;
 
-  Pose motion_at(const Vec3& velocity_mps, const Vec3& angular_velocity_rps, double dt_s) const;
+  // Where an axis was lag_s from t_s_, beside where it is: variances of the value then and of its covariances
+  // with value and rate now.
+  struct Then {
+    double variance, with_value, with_rate;
+  };
+  Then then(int axis, double lag_s) const;
+  void in_camera_axes(bool inverse, double (&out)[36]) const;
   void update_output(const Pose& before, double dt_s);
   MotionOutput output_;
   Pose corrected_;  // newest corrected pose and its time, for the published rates

@@ -32,6 +32,11 @@ struct NormalEquations {
     }
   }
 
+  void add(const NormalEquations& other) {
+    for (int i = 0; i < kSize * kSize; ++i) H[i] += other.H[i];
+    for (int i = 0; i < kSize; ++i) g[i] += other.g[i];
+  }
+
   void mirror() {
     for (int i = 0; i < kSize; ++i)
       for (int j = 0; j < i; ++j) H[i * kSize + j] = H[j * kSize + i];

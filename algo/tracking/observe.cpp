@@ -58,7 +58,7 @@ namespace {
 // The pixels of `box` for which keep(u, v) holds, thinned evenly to the capacity of `out`.
 template <typename Keep>
 std::size_t gather(ImageView<const float> depth_z, const Rect& box, const Pinhole& camera,
-                   ImageView<const std::uint32_t> color, std::span<ObservedPoint> out, const Keep& keep) {
+                   std::span<ObservedPoint> out, const Keep& keep) {
   std::size_t candidates = 0;
   for (int v = box.v0; v < box.v1; ++v)
     for (int u = box.u0; u < box.u1; ++u) candidates += keep(u, v) ? 1 : 0;
@@ -71,7 +71,6 @@ std::size_t gather(ImageView<const float> depth_z, const Rect& box, const Pinhol
       if (!keep(u, v) || seen++ % every != 0) continue;
       ObservedPoint& point = out[used++];
       point.p = camera.ray(static_cast<float>(u), static_cast<float>(v)) * depth_z(u, v);
-      point.luminance = color.empty() || alpha_of(color(u, v)) == 0 ? -1.0f : luminance_of(color(u, v));
       point.u = static_cast<std::uint16_t>(u);
       point.v = static_cast<std::uint16_t>(v);
     }
@@ -83,14 +82,14 @@ std::size_t gather(ImageView<const float> depth_z, const Rect& box, const Pinhol
 
 std::size_t gather_points(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
                           std::uint8_t owner, const Rect& roi, const Pinhole& camera,
-                          ImageView<const std::uint32_t> color, std::span<ObservedPoint> out) {
-  return gather(depth_z, roi.clipped(depth_z.width, depth_z.height), camera, color, out,
+                          std::span<ObservedPoint> out) {
+  return gather(depth_z, roi.clipped(depth_z.width, depth_z.height), camera, out,
                 [&](int u, int v) { return owners(u, v) == owner && depth_z(u, v) > 0; });
 }
 
 std::size_t gather_near_view(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
                              std::uint8_t owner, const ModelView& view, const Pinhole& camera,
-                             ImageView<const std::uint32_t> color, std::span<ObservedPoint> out) {
+                             std::span<ObservedPoint> out) {
   constexpr float kNear_m = 0.08f;
   const int reach = depth_z.width / 80;
   const auto near_model = [&](int u, int v) {
@@ -101,8 +100,7 @@ std::size_t gather_near_view(ImageView<const float> depth_z, ImageView<const std
     }
     return false;
   };
-  return gather(depth_z, view.maps.roi.grown(reach).clipped(depth_z.width, depth_z.height), camera, color,
-                out,
+  return gather(depth_z, view.maps.roi.grown(reach).clipped(depth_z.width, depth_z.height), camera, out,
                 [&](int u, int v) { return owners(u, v) == owner && depth_z(u, v) > 0 && near_model(u, v); });
 }
 
@@ -122,7 +120,10 @@ bool ColorRegistration::sample(const ColorImage& image, const PoseF& motion, con
                                float (&rgb)[3]) const {
   const Vec3f c = T_color_depth_ * (motion * p);
   if (!(c.z > 0.05f)) return false;
-  double x = static_cast<double>(c.x / c.z), y = static_cast<double>(c.y / c.z);
+  return sample_pixel(image, static_cast<double>(c.x / c.z), static_cast<double>(c.y / c.z), rgb);
+}
+
+bool ColorRegistration::sample_pixel(const ColorImage& image, double x, double y, float (&rgb)[3]) const {
   if (color_.distorted()) {
     const Normalized d = distort(color_, {x, y});
     x = d.x;

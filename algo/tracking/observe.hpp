@@ -14,18 +14,17 @@ struct ColorImage {
   bool empty() const { return rgb.empty(); }
 };
 
-// Collects the pixels of `roi` whose owner is `owner` and whose depth is known, with their luminance where
-// `color` (pack_rgb, alpha 0: none; may be empty) has one. Thinned evenly so that out.size() is never
-// exceeded. Returns how many were written.
+// Collects the pixels of `roi` whose owner is `owner` and whose depth is known, thinned evenly so that
+// out.size() is never exceeded. Returns how many were written.
 std::size_t gather_points(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
                           std::uint8_t owner, const Rect& roi, const Pinhole& camera,
-                          ImageView<const std::uint32_t> color, std::span<ObservedPoint> out);
+                          std::span<ObservedPoint> out);
 
 // The same, of the pixels that may lie on the model as `view` shows it: within 8 cm in depth, and an
 // eightieth of the image's width beside it.
 std::size_t gather_near_view(ImageView<const float> depth_z, ImageView<const std::uint8_t> owners,
                              std::uint8_t owner, const ModelView& view, const Pinhole& camera,
-                             ImageView<const std::uint32_t> color, std::span<ObservedPoint> out);
+                             std::span<ObservedPoint> out);
 
 // A step in depth larger than noise and slope.
 inline float edge_step_m(float z_m) { return 0.015f + 0.012f * z_m * z_m; }
@@ -49,6 +48,11 @@ class ColorRegistration {
   void configure(const Calibration& calibration);
   // RGB at the point by bilinear interpolation; false outside of the image.
   bool sample(const ColorImage& image, const PoseF& motion, const Vec3f& p, float (&rgb)[3]) const;
+  // The same in the direction (x, y, 1) of the colour camera's frame.
+  bool sample_pixel(const ColorImage& image, double x, double y, float (&rgb)[3]) const;
+
+  const Intrinsics& camera() const { return color_; }
+  const PoseF& T_color_depth() const { return T_color_depth_; }
 
  private:
   Intrinsics color_;

@@ -9,42 +9,22 @@
 
 #include <hwy/highway.h>
 
+#include "algo/tracking/sums-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace st {
 namespace HWY_NAMESPACE {
 namespace pairing {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, 8>;
-using DI = hn::RebindToSigned<D>;
-using V = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using M = hn::Mask<D>;
-
-constexpr int kBlock = 512;  // points between two emptyings of the float sums into double ones
-
-struct Vec {
-  V x, y, z;
-};
-
-HWY_INLINE Vec turned(D d, const float* R, const Vec& p) {
-  const auto row = [&](int r) {
-    return hn::MulAdd(hn::Set(d, R[3 * r]), p.x,
-                      hn::MulAdd(hn::Set(d, R[3 * r + 1]), p.y, hn::Mul(hn::Set(d, R[3 * r + 2]), p.z)));
-  };
-  return {row(0), row(1), row(2)};
-}
-
-HWY_INLINE Vec crossed(const Vec& a, const Vec& b) {
-  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
-          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
-}
+using namespace sums;
 
 // Word w of the records, as integers.
 template <int w>
 HWY_INLINE VI word(const Pairing& k, VI record) {
   const DI di;
-  return hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(k.view) + w, hn::ShiftLeft<2>(record));
+  return hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(k.view) + w,
+                         hn::Add(record, hn::Add(record, record)));
 }
 HWY_INLINE V low_half(D d, VI w) { return hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(w))); }
 HWY_INLINE V high_half(D d, VI w) { return hn::ConvertTo(d, hn::ShiftRight<16>(w)); }
@@ -64,9 +44,7 @@ HWY_INLINE Pair pair_at(D d, const Pairing& k, int first) {
   const DI di;
   Pair o;
   o.p = {hn::LoadU(d, k.x + first), hn::LoadU(d, k.y + first), hn::LoadU(d, k.z + first)};
-  o.q = turned(d, k.to_view, o.p);
-  o.q = {hn::Add(o.q.x, hn::Set(d, k.at[0])), hn::Add(o.q.y, hn::Set(d, k.at[1])),
-         hn::Add(o.q.z, hn::Set(d, k.at[2]))};
+  o.q = moved(d, k.to_view, k.at, o.p);
   const M there =
       hn::And(hn::Gt(o.q.z, hn::Set(d, 0.1f)), hn::FirstN(d, static_cast<std::size_t>(k.count - first)));
   o.per_z = hn::IfThenElseZero(there, hn::Div(hn::Set(d, 1.0f), o.q.z));
@@ -99,33 +77,6 @@ HWY_INLINE void pose_jacobian(D d, const Pairing& k, const Pair& pair, const Vec
       {from_pivot(d, k, pair.p.x, 0), from_pivot(d, k, pair.p.y, 1), from_pivot(d, k, pair.p.z, 2)}, N);
   J[0] = N.x, J[1] = N.y, J[2] = N.z, J[3] = moment.x, J[4] = moment.y, J[5] = moment.z;
 }
-
-HWY_INLINE double sum(D d, V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); }
-
-// Sums of w J J^T (upper triangle, row by row) and w J r.
-template <int N>
-struct Sums {
-  static constexpr int kTriangle = N * (N + 1) / 2;
-  V h[kTriangle], g[N];
-
-  HWY_INLINE void clear(D d) {
-    for (V& v : h) v = hn::Zero(d);
-    for (V& v : g) v = hn::Zero(d);
-  }
-  HWY_INLINE void add(const V (&J)[N], V r, V w) {
-    int k = 0;
-    for (int i = 0; i < N; ++i) {
-      const V wJ = hn::Mul(w, J[i]);
-      g[i] = hn::MulAdd(wJ, r, g[i]);
-      for (int j = i; j < N; ++j, ++k) h[k] = hn::MulAdd(wJ, J[j], h[k]);
-    }
-  }
-  HWY_INLINE void empty_into(D d, double* triangle, double* gradient) {
-    for (int i = 0; i < kTriangle; ++i) triangle[i] += sum(d, h[i]);
-    for (int i = 0; i < N; ++i) gradient[i] += sum(d, g[i]);
-    clear(d);
-  }
-};
 
 }  // namespace pairing
 }  // namespace HWY_NAMESPACE

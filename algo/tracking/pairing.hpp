@@ -8,7 +8,7 @@
 namespace st {
 
 struct Pairing {
-  const float *x, *y, *z, *luminance;  // points, camera frame
+  const float *x, *y, *z;  // points, camera frame
   int count;
   const ViewPixel* view;  // record 0 is empty, then width x height
   int width, height;
@@ -25,7 +25,6 @@ inline Pairing pairing_of(const PointTable& points, std::size_t count, const Vie
   k.x = points.x.data();
   k.y = points.y.data();
   k.z = points.z.data();
-  k.luminance = points.luminance.data();
   k.count = static_cast<int>(count);
   k.view = view.pixels.data();
   k.width = view.roi.width();

@@ -4,6 +4,7 @@ namespace st {
 namespace {
 
 constexpr std::size_t kPhases = 8;
+// Which phase of the scan comes when. Bits reversed, so it is its own inverse.
 constexpr std::size_t kPhaseOrder[kPhases] = {0, 4, 2, 6, 1, 5, 3, 7};
 
 }  // namespace
@@ -18,23 +19,26 @@ std::size_t PointTable::prefix(std::size_t wanted) const {
   return (count + share - 1) / share;
 }
 
+void PointTable::begin(std::size_t of, std::size_t most) {
+  const std::size_t limit = most < kMost ? most : kMost;
+  available = of;
+  count = of < limit ? of : limit;
+  for (std::size_t i = count; i < count + kPadding; ++i) x[i] = y[i] = z[i] = luminance[i] = 0;
+}
+
+void PointTable::put(std::size_t k, const Vec3f& p, float grey) {
+  std::size_t at = k / kPhases;
+  for (std::size_t rank = 0; rank < kPhaseOrder[k % kPhases]; ++rank)
+    at += (count + kPhases - 1 - kPhaseOrder[rank]) / kPhases;  // the points of an earlier phase
+  x[at] = p.x;
+  y[at] = p.y;
+  z[at] = p.z;
+  luminance[at] = grey;
+}
+
 void arrange_points(std::span<const ObservedPoint> points, std::size_t most, PointTable& table) {
-  const std::size_t limit = most < PointTable::kMost ? most : PointTable::kMost;
-  table.available = points.size();
-  table.count = points.size() < limit ? points.size() : limit;
-  std::size_t used = 0;
-  for (const std::size_t phase : kPhaseOrder) {
-    for (std::size_t i = phase; i < table.count; i += kPhases) {
-      const ObservedPoint& point = points[i * points.size() / table.count];
-      table.x[used] = point.p.x;
-      table.y[used] = point.p.y;
-      table.z[used] = point.p.z;
-      table.luminance[used] = point.luminance;
-      ++used;
-    }
-  }
-  for (std::size_t i = used; i < used + PointTable::kPadding; ++i)
-    table.x[i] = table.y[i] = table.z[i] = 0, table.luminance[i] = -1;
+  table.begin(points.size(), most);
+  for (std::size_t k = 0; k < table.count; ++k) table.put(k, points[table.source(k)].p, 0);
 }
 
 }  // namespace st

@@ -7,6 +7,7 @@
 #include "algo/tracking/judge.hpp"
 #include "algo/tracking/model_view.hpp"
 #include "algo/tracking/motion_filter.hpp"
+#include "algo/tracking/wheel_witness.hpp"
 #include "algo/volume/volume.hpp"
 
 namespace st {
@@ -69,6 +70,8 @@ struct Track {
   DriveModel drive;
   ExpectedHeading heading;     // in this frame, from its motion
   bool heading_doubt = false;  // what it looks like contradicts that
+  WheelWitness wheels;         // whether the robot's wheels may tell its turn
+  bool asked_wheels = false;   // and whether they did in this frame
   Pose T_camera_object;        // newest estimate, whatever its state
   Pose T_last_good;
   TrackState state = TrackState::kLost;
@@ -86,7 +89,6 @@ struct Track {
   int published_gap = 0;   // predicted rows in a row
   double last_good_t_s = 0;
   double yaw_unwrapped = 0;  // as published, floor frame
-  double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
 
   bool planar = true;     // rests on the floor: floor prior applies
   int off_floor_run = 0;  // frames in a row that contradict it
@@ -96,7 +98,6 @@ struct Track {
   ModelView view;  // what this frame is aligned with: rendered, or in frame-to-frame mode the frame before
   int view_pixels = 0;  // with a surface
   std::size_t points_used = 0;
-  bool colored = false;  // the colours of its pixels were taken over in this frame
   AlignResult aligned;
   Agreement agreement;
   Verdict verdict = Verdict::kLost;

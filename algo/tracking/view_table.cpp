@@ -20,8 +20,8 @@ ViewPixel surface_pixel(const ModelMaps& maps, std::size_t at) {
   return pixel;
 }
 
-bool continues(const ViewPixel& pixel, float z) {
-  return pixel.z > 0 && pixel.luminance != kNoColor && std::fabs(pixel.z - z) <= 0.02f + 0.01f * z;
+bool continues(const ModelMaps& maps, std::size_t at, float z) {
+  return maps.z[at] > 0 && alpha_of(maps.color[at]) != 0 && std::fabs(maps.z[at] - z) <= 0.02f + 0.01f * z;
 }
 
 }  // namespace
@@ -37,22 +37,18 @@ void build_view_table(const ModelView& view, ViewTable& table) {
   table.T_camera_object = view.T_camera_object;
   table.pixels[0] = ViewPixel{};
   const int width = maps.roi.width(), height = maps.roi.height();
+  const std::size_t stride = static_cast<std::size_t>(maps.stride);
   ViewPixel* out = table.pixels.data() + 1;
   for (int v = 0; v < height; ++v) {
-    const std::size_t row = static_cast<std::size_t>(v) * static_cast<std::size_t>(maps.stride);
-    for (int u = 0; u < width; ++u) *out++ = surface_pixel(maps, row + static_cast<std::size_t>(u));
-  }
-  for (int v = 1; v + 1 < height; ++v) {
-    ViewPixel* row = table.pixels.data() + 1 + static_cast<std::ptrdiff_t>(v) * width;
-    for (int u = 1; u + 1 < width; ++u) {
-      ViewPixel& here = row[u];
-      if (!(here.z > 0) || here.luminance == kNoColor) continue;
-      const ViewPixel &left = row[u - 1], &right = row[u + 1], &up = row[u - width], &down = row[u + width];
-      if (!continues(left, here.z) || !continues(right, here.z) || !continues(up, here.z) ||
-          !continues(down, here.z))
-        continue;
-      here.du = static_cast<std::int16_t>(right.luminance - left.luminance);
-      here.dv = static_cast<std::int16_t>(down.luminance - up.luminance);
+    const std::size_t row = static_cast<std::size_t>(v) * stride;
+    for (int u = 0; u < width; ++u, ++out) {
+      const std::size_t at = row + static_cast<std::size_t>(u);
+      *out = surface_pixel(maps, at);
+      if (out->luminance == kNoColor) continue;
+      const bool inner = u > 0 && u + 1 < width && v > 0 && v + 1 < height;
+      if (!inner || !continues(maps, at - 1, out->z) || !continues(maps, at + 1, out->z) ||
+          !continues(maps, at - stride, out->z) || !continues(maps, at + stride, out->z))
+        out->luminance = kNoColor;
     }
   }
 }

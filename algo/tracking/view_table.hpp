@@ -6,23 +6,18 @@
 #include <span>
 
 #include "algo/core/bump.hpp"
+#include "algo/tracking/color_frame.hpp"
 #include "algo/tracking/model_view.hpp"
 
 namespace st {
 
-inline constexpr float kLuminanceScale = 64.0f;  // steps of a grey level in ViewPixel::luminance
-inline constexpr float kGradientScale =
-    2 * kLuminanceScale;                          // and in its gradient: whole differences stay exact
-inline constexpr std::int16_t kNoColor = -32768;  // ViewPixel::du where a colour is missing
-
-// The kernels read it as four 32-bit words, hence the order.
+// The kernels read it as three 32-bit words, hence the order.
 struct ViewPixel {
-  float z = 0;                                // metres; 0: no surface
-  std::int16_t nx = 0, ny = 0, nz = 0;        // normal times kNormalScale, view's camera frame
-  std::int16_t luminance = 0;                 // times kLuminanceScale
-  std::int16_t du = kNoColor, dv = kNoColor;  // its central differences per pixel, times kGradientScale
+  float z = 0;                          // metres; 0: no surface
+  std::int16_t nx = 0, ny = 0, nz = 0;  // normal times kNormalScale, view's camera frame
+  std::int16_t luminance = kNoColor;    // times kLuminanceScale
 };
-static_assert(sizeof(ViewPixel) == 16);
+static_assert(sizeof(ViewPixel) == 12);
 
 struct ViewTable {
   Rect roi;
@@ -37,7 +32,8 @@ struct ViewTable {
   }
 };
 
-// A pixel has a colour gradient where it and its four neighbours have colour and lie on one surface.
+// A pixel has a colour where it and its four neighbours have one and lie on one surface: at an edge the
+// camera mixes it with what lies behind.
 void build_view_table(const ModelView& view, ViewTable& table);
 
 }  // namespace st

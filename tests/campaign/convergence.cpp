@@ -20,14 +20,15 @@ constexpr double kDegree = kPi / 180;
 struct Aligner {
   const char* name;
   enum Kind { kModelView, kFrameBefore, kCloud } kind;
+  bool color;
   AlignTerms terms;
 };
 constexpr Aligner kAligners[] = {
-    {"frame to frame", Aligner::kFrameBefore, {}},
-    {"closest point (Listing 1)", Aligner::kCloud, {}},
-    {"projective ICP alone", Aligner::kModelView, {false, false, false, false}},
-    {"full, no motion prior", Aligner::kModelView, {true, true, true, false}},
-    {"full estimator", Aligner::kModelView, {}},
+    {"frame to frame", Aligner::kFrameBefore, true, {}},
+    {"closest point (Listing 1)", Aligner::kCloud, false, {}},
+    {"projective ICP alone", Aligner::kModelView, false, {false, false, false}},
+    {"full, no motion prior", Aligner::kModelView, true, {true, true, false}},
+    {"full estimator", Aligner::kModelView, true, {}},
 };
 constexpr std::size_t kKinds = std::size(kAligners);
 
@@ -122,6 +123,8 @@ class Jumps {
     in.floor.up_camera = views_.support().up;
     in.floor.d = views_.support().d;
     in.terms = aligner.terms;
+    if (aligner.color) in.color = &frame.colors;
+    in.color_time.tie.R_frame_camera = views_.support().R_camera_floor.transposed();
     in.largest_start_error_m = kSettledTrack_m;
     const AlignResult result =
         aligner.kind == Aligner::kCloud ? align_closest_point(in, cloud_, aligning_) : align(in, aligning_);

@@ -11,10 +11,11 @@ sim::Scene scene_of(const std::string& name, std::uint64_t seed, bool laptop) {
   return sim::make_scene(options);
 }
 
+constexpr int kMargin_px = 14;
+
 }  // namespace
 
 EvidenceInput RobotFrame::evidence(const Pinhole& camera) const {
-  constexpr int kMargin_px = 14;
   EvidenceInput in;
   in.camera = camera;
   in.roi = box.grown(kMargin_px).clipped(depth_z.width, depth_z.height);
@@ -77,10 +78,18 @@ RobotFrame RobotViews::look(const Pose& T_room_robot) {
   const ColorImage image{{rgb_.data(), 3 * s.calibration.color.width, s.calibration.color.height}};
   register_color(registration_, image, PoseF{}, frame.depth_z, frame.owners, kRobot, frame.box, camera_,
                  frame.color);
+  const auto bind_colors = [&](Bump& memory) {
+    frame.colors.bind(memory, s.calibration.color.width, s.calibration.color.height);
+  };
+  Bump measure;
+  bind_colors(measure);
+  frame.colors_data.resize(measure.used() / sizeof(std::uint64_t) + Bump::kAlign);
+  Bump memory(frame.colors_data.data(), frame.colors_data.size() * sizeof(std::uint64_t));
+  bind_colors(memory);
+  build_color_frame(registration_, image, camera_, frame.box.grown(kMargin_px), frame.colors);
   mark_edges(frame.depth_z, kRobot, frame.box, frame.owners);
   frame.points.resize(kMostPoints);
-  frame.points.resize(
-      gather_points(frame.depth_z, frame.owners, kRobot, frame.box, camera_, frame.color, frame.points));
+  frame.points.resize(gather_points(frame.depth_z, frame.owners, kRobot, frame.box, camera_, frame.points));
   return frame;
 }
 

@@ -23,6 +23,8 @@ struct RobotFrame {
   ImageView<std::uint32_t> color;
   Rect box;
   std::vector<ObservedPoint> points;
+  ColorFrame colors;
+  std::vector<std::uint64_t> colors_data;
 
   EvidenceInput evidence(const Pinhole& camera) const;
 };

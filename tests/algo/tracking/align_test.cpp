@@ -5,6 +5,7 @@
 #include "algo/core/simd.hpp"
 #include "tests/algo/tracking/flat_view.hpp"
 #include "tests/algo/tracking/painted_ellipsoid.hpp"
+#include "tests/algo/tracking/seen_colors.hpp"
 #include "tests/support/bound.hpp"
 
 using namespace st;
@@ -68,7 +69,8 @@ TEST_GROUP(Align) {
     in.camera = thing.camera;
     in.start = in.prior.mean = start;
     in.pivot = start.t;
-    in.terms = {true, true, false, false};
+    in.terms = {true, false, false};
+    in.color = &frame.colors.frame;
     return in;
   }
   static double distance_mm(const Pose& a, const Pose& b) { return 1e3 * norm(a.t - b.t); }
@@ -111,7 +113,7 @@ TEST(Align, AHeadingFromTheMotionTurnsWhatThePictureLeavesOpen) {
   std::vector<float> depth(160 * 120, 1.0f);
   for (int v = 42; v < 78; v += 2)
     for (int u = 62; u < 98; u += 2)
-      points.push_back({kSmallCamera.ray(static_cast<float>(u), static_cast<float>(v)), -1.0f});
+      points.push_back({kSmallCamera.ray(static_cast<float>(u), static_cast<float>(v))});
   in.points = points;
   in.view = flat.view;
   in.depth_z = {depth.data(), 160, 120};
@@ -120,7 +122,7 @@ TEST(Align, AHeadingFromTheMotionTurnsWhatThePictureLeavesOpen) {
   in.pivot = {0, 0, 1};
   for (int i = 0; i < 6; ++i) in.prior.information[7 * i] = i < 3 ? 1e6 : 1.0;
   in.floor.up_camera = {0, 0, -1};
-  in.terms = {false, false, false, true};
+  in.terms = {false, false, true};
   in.heading = {true, 0.15, 0.02};
   const Mat3 turned = align(in, work.scratch).T_camera_object.R;
   DOUBLES_EQUAL(0.15, dot(rotation_to_vector(turned), in.floor.up_camera), 0.005);
@@ -134,7 +136,7 @@ TEST(Align, WhatNothingHoldsIsNotSolvedAndStaysWhereItWasLookedFor) {
   in.depth_z = {depth.data(), 160, 120};
   in.camera = kSmallCamera;
   in.start = {rotation_from_vector({0.1, 0.2, 0.3}), {0.3, 0.2, 1.1}};
-  in.terms = {false, false, false, false};
+  in.terms = {false, false, false};
   const AlignResult result = align(in, work.scratch);
   CHECK_FALSE(result.solved);
   DOUBLES_EQUAL(0, norm(result.T_camera_object.t - in.start.t), 0);
@@ -207,18 +209,19 @@ TEST(Align, TheColorTermsGradientIsTheSlopeOfItsResiduals) {
   const PaintedView model(thing, kAt, {90, 50, 250, 190});
   const PaintedFrame frame(thing, kAt);
   build_view_table(model.view, work.scratch.view);
-  arrange_points(frame.points, PointTable::kMost, work.scratch.points);
   const ColorTermOptions options;
+  PointTable& points = work.scratch.color_points;
+  collect_color_points(work.scratch.view, thing.camera, frame.depth_z, Pose{}, options, PointTable::kMost,
+                       points);
   const double no_shift[2] = {0, 0};
   // Near the truth a solved step leads back to it, in every direction that colour sees.
   for (const char* name : supported_simd()) {
     CHECK(select_simd(name) == SimdChoice::kDone);
     const double turn = 0.004;  // about the camera's axis
-    const Pose D = moved_about(Pose{}, {{}, {0, 0, turn}}, kAt.t);
+    const Pose then = moved_about(Pose{}, {{}, {0, 0, turn}}, kAt.t);
     NormalEquations eq;
     const ColorTermResult result =
-        add_color_term(work.scratch.points, work.scratch.points.count, work.scratch.view, thing.camera, D,
-                       kAt.t, {}, no_shift, options, eq);
+        add_color_term({points, points.count, frame.colors.frame, then}, kAt.t, {}, no_shift, options, eq);
     CHECK_COMPARE(result.used, >, 500);
     constexpr int kTurn = 5;
     DOUBLES_EQUAL(-turn, -eq.g[kTurn] / eq.H[kTurn * NormalEquations::kSize + kTurn], 0.3 * turn);
@@ -227,12 +230,54 @@ TEST(Align, TheColorTermsGradientIsTheSlopeOfItsResiduals) {
 
 TEST(Align, TheGainOfADarkerExposureIsFound) {
   const PaintedView model(thing, kAt, {90, 50, 250, 190});
-  PaintedFrame frame(thing, kAt);
-  for (ObservedPoint& point : frame.points) point.luminance = 0.8f * point.luminance + 12.0f;
+  const PaintedFrame frame(thing, kAt);
+  const SeenColors darker(thing.camera,
+                          [&](int u, int v) { return 0.8 * painted_grey(thing, kAt, u, v) + 12; });
   build_view_table(model.view, work.scratch.view);
-  arrange_points(frame.points, PointTable::kMost, work.scratch.points);
-  const ColorGain gain = fit_color_gain(work.scratch.points, work.scratch.points.count, work.scratch.view,
-                                        thing.camera, Pose{}, {});
-  DOUBLES_EQUAL(0.8, gain.gain, 0.01);
-  DOUBLES_EQUAL(12.0, gain.offset, 1.0);
+  PointTable& points = work.scratch.color_points;
+  collect_color_points(work.scratch.view, thing.camera, frame.depth_z, Pose{}, {}, PointTable::kMost, points);
+  const ColorGain gain = fit_color_gain({points, points.count, darker.frame, Pose{}});
+  DOUBLES_EQUAL(0.8, gain.gain, 0.02);
+  DOUBLES_EQUAL(12.0, gain.offset, 2.0);
+}
+
+TEST(Align, ColoursAreTakenWhereTheModelMayBeSeen) {
+  const PaintedView model(thing, kAt, {90, 50, 250, 190});
+  PaintedFrame frame(thing, kAt);
+  build_view_table(model.view, work.scratch.view);
+  PointTable& points = work.scratch.color_points;
+  const auto count = [&] {
+    collect_color_points(work.scratch.view, thing.camera, frame.depth_z, Pose{}, {}, PointTable::kMost,
+                         points);
+    return points.available;
+  };
+  const std::size_t all = count();
+  CHECK_COMPARE(all, >, 1000u);
+  const auto left_half = [&](float depth_m) {
+    for (int v = 0; v < 240; ++v)
+      for (int u = 0; u < 170; ++u) frame.z[static_cast<std::size_t>(v * 320 + u)] = depth_m;
+  };
+  left_half(0);  // it returns no depth: its colours show all the same
+  UNSIGNED_LONGS_EQUAL(all, count());
+  left_half(0.8f);  // something stands before it
+  const std::size_t right = count();
+  CHECK_COMPARE(right, <, 3 * all / 4);
+  left_half(3.0f);  // it is not there
+  UNSIGNED_LONGS_EQUAL(right, count());
+}
+
+TEST(Align, ColoursOfAnEarlierInstantGiveThePoseNow) {
+  const PaintedView model(thing, kAt, {90, 50, 250, 190});
+  // Between the images it turned on as it was expected to.
+  const Pose truth = moved_about(kAt, {{0.002, 0, 0}, {0.03, 0.05, -0.04}}, kAt.t);
+  const Pose motion = moved_about(Pose{}, {{}, {0, -0.03, 0.06}}, kAt.t);
+  const PaintedFrame frame(thing, truth), earlier(thing, motion * truth);
+  AlignInput in = input(model, frame, kAt);
+  in.color = &earlier.colors.frame;
+  in.color_time.motion = motion;
+  const AlignResult result = align(in, work.scratch);
+  CHECK_COMPARE(turn_deg(result.T_camera_object, truth), <, 0.25);
+  CHECK_COMPARE(turn_deg(result.color_motion, motion), <, 0.25);
+  in.color_time = {};  // as if of the same instant
+  CHECK_COMPARE(turn_deg(align(in, work.scratch).T_camera_object, truth), >, 0.5);
 }

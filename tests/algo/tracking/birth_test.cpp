@@ -32,7 +32,7 @@ std::vector<ObservedPoint> box_points(double ahead_m, double side_m, const Vec3&
   std::vector<ObservedPoint> points;
   const auto add = [&](double a, double b, double h) {
     const Vec3 p = below + ahead * (ahead_m + a) + left * (b - side_m) + kUp * (lift_m + h);
-    points.push_back({to_float(p), -1, 0, 0});
+    points.push_back({to_float(p)});
   };
   constexpr int kSteps = 40;
   for (int i = 0; i <= kSteps; ++i)
@@ -73,7 +73,7 @@ TEST(Birth, OriginIsBelowTheMiddleOnTheFloor) {
 TEST(Birth, AFewStrayPointsDoNotMoveIt) {
   std::vector<ObservedPoint> points = box_points(1.6, 0.3, {0.3, 0.4, 0.1});
   const Footprint clean = find_footprint(points, kFloor);
-  for (int i = 0; i < 10; ++i) points.push_back({to_float(Vec3{0.5 + 0.02 * i, 0, 2.2}), -1, 0, 0});
+  for (int i = 0; i < 10; ++i) points.push_back({to_float(Vec3{0.5 + 0.02 * i, 0, 2.2})});
   const Footprint f = find_footprint(points, kFloor);
   DOUBLES_EQUAL(0, norm(f.T_camera_object.t - clean.T_camera_object.t), 0.01);
 }

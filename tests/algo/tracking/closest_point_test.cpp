@@ -90,9 +90,9 @@ TEST_GROUP(ClosestPoint) {
     Rendering how;
     how.noise = 1;
     frame = render(solid, T, how, random, kCamera);
-    const std::size_t n = gather_points({frame.depth.data(), kCamera.width, kCamera.height},
-                                        {frame.owners.data(), kCamera.width, kCamera.height}, 1, frame.roi,
-                                        kCamera, {}, points);
+    const std::size_t n =
+        gather_points({frame.depth.data(), kCamera.width, kCamera.height},
+                      {frame.owners.data(), kCamera.width, kCamera.height}, 1, frame.roi, kCamera, points);
     return {points.data(), n};
   }
 };
@@ -181,7 +181,7 @@ TEST(ClosestPoint, AgreesWithProjectiveIcpOnSmallMotions) {
     in.camera = kCamera;
     in.start = in.prior.mean = start;
     in.pivot = start.t;
-    in.terms = {false, false, false, false};
+    in.terms = {false, false, false};
     const AlignResult closest = align_closest_point(in, model, scratch), projective = align(in, scratch);
     CHECK(closest.solved && projective.solved);
     DOUBLES_EQUAL(0, distance_m(closest.T_camera_object, projective.T_camera_object), 0.004);

@@ -1,71 +1,80 @@
 #include "algo/tracking/color_frame.hpp"
 
-#include <vector>
+#include <CppUTest/TestHarness.h>
 
-#include "algo/volume/voxel.hpp"
+#include <cmath>
 
-#include <CppUTest/TestHarness.h>  // last: its macro for new breaks the headers of the standard library
+#include "tests/algo/tracking/seen_colors.hpp"
 
 using namespace st;
+using namespace st::test;
 
 namespace {
 
-constexpr int kW = 37, kH = 20;  // no multiple of any vector's width
+constexpr Pinhole kCamera{150, 150, 79.5f, 59.5f, 160, 120};
 
-struct Frames {
-  Frames() : z(kW * kH + 16, 1.0f), rgb(3 * kW * kH), out(kW * kH, 7) {
-    for (int i = 0; i < kW * kH; ++i) {
-      rgb[static_cast<std::size_t>(3 * i)] = static_cast<std::uint8_t>(i % kW);
-      rgb[static_cast<std::size_t>(3 * i + 1)] = static_cast<std::uint8_t>(i / kW);
-      rgb[static_cast<std::size_t>(3 * i + 2)] = 99;
-    }
-    calibration.has_color = true;
-    calibration.depth = calibration.color = {kW, kH, 30, 30, 18, 9.5, {0, 0, 0, 0, 0}};
-  }
-  bool take(const PoseF& motion = {}) {
-    return color_frame(calibration, {{rgb.data(), 3 * kW, kH}}, motion, {z.data(), kW, kH},
-                       Pinhole::of(calibration.depth), {out.data(), kW, kH});
-  }
-  std::uint32_t at(int u, int v) const { return out[static_cast<std::size_t>(v * kW + u)]; }
-
-  Calibration calibration;
-  std::vector<float> z;
-  std::vector<std::uint8_t> rgb;
-  std::vector<std::uint32_t> out;
-};
+double wave(double u, double v) { return 120 + 40 * std::sin(0.15 * u) + 30 * std::cos(0.11 * v); }
 
 }  // namespace
 
-TEST_GROUP(ColorFrame) { Frames f; };
+TEST_GROUP(ColorFrame){};
 
-TEST(ColorFrame, RegisteredColourStaysInItsPixel) {
-  f.calibration.color_registered = true;
-  f.z[5] = 0;
-  CHECK(f.take());
-  UNSIGNED_LONGS_EQUAL(0, f.at(5, 0));
-  for (int v = 0; v < kH; ++v)
-    for (int u = 0; u + 1 < kW; ++u) {
-      if (u == 5 && v == 0) continue;
-      UNSIGNED_LONGS_EQUAL(pack_rgb(static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 99),
-                           f.at(u, v));
+TEST(ColorFrame, HoldsTheImageAndItsSlopes) {
+  const SeenColors colors(kCamera, wave);
+  const ColorFrame& frame = colors.frame;
+  for (int v = 5; v < 115; v += 7)
+    for (int u = 5; u < 155; u += 7) {
+      DOUBLES_EQUAL(wave(u, v), colors.at(u, v), 1.0);  // smoothed, and rounded to a byte
+      const ColorPixel& pixel =
+          frame.pixels[static_cast<std::size_t>((v - frame.roi.v0) * frame.roi.width() + u - frame.roi.u0) +
+                       1];
+      DOUBLES_EQUAL(40 * 0.15 * std::cos(0.15 * u), pixel.du / double{kLuminanceScale}, 0.5);
+      DOUBLES_EQUAL(-30 * 0.11 * std::sin(0.11 * v), pixel.dv / double{kLuminanceScale}, 0.5);
     }
+  LONGS_EQUAL(kNoColor, frame.pixels[0].luminance);
+  LONGS_EQUAL(kNoColor, frame.pixels[1].luminance);  // a corner has no slope
 }
 
-TEST(ColorFrame, ACameraBesideShiftsByItsParallaxAndMotionAddsToIt) {
-  f.calibration.T_color_depth.t = {0.1, 0, 0};  // three pixels at one metre
-  CHECK(f.take());
-  UNSIGNED_LONGS_EQUAL(13, red_of(f.at(10, 4)));
-  UNSIGNED_LONGS_EQUAL(0, f.at(kW - 2, 4));  // beyond the colour image
-  CHECK(f.take({Mat3f{}, {0, 0.1f, 0}}));
-  UNSIGNED_LONGS_EQUAL(13, red_of(f.at(10, 4)));
-  UNSIGNED_LONGS_EQUAL(7, green_of(f.at(10, 4)));
+TEST(ColorFrame, TakesOverNoMoreThanWhereTheBoxMayAppear) {
+  SeenColors colors(kCamera, wave);
+  build_color_frame(colors.registration, colors.image(), kCamera, {40, 30, 60, 50}, colors.frame);
+  const Rect& roi = colors.frame.roi;
+  CHECK(roi.u0 <= 40 && roi.v0 <= 30 && roi.u1 >= 60 && roi.v1 >= 50);
+  CHECK(roi.u0 >= 25 && roi.v0 >= 15 && roi.u1 <= 75 && roi.v1 <= 65);
+  DOUBLES_EQUAL(wave(50, 40), colors.at(50, 40), 1.0);
+  build_color_frame(colors.registration, colors.image(), kCamera, {0, 0, 0, 0}, colors.frame);
+  CHECK(colors.frame.empty());
 }
 
-TEST(ColorFrame, AnotherSizeOrALensWithDistortionIsRefused) {
-  f.calibration.color.width = kW + 1;
-  CHECK(!f.take());
-  f.calibration.color.width = kW;
-  f.calibration.color.k[0] = 0.1;
-  CHECK(!f.take());
-  UNSIGNED_LONGS_EQUAL(7, f.at(0, 0));
+TEST(ColorFrame, SeesNearAndFarThingsThroughAColourCameraBeside) {
+  Calibration calibration;
+  calibration.depth = intrinsics_of(kCamera);
+  calibration.color = intrinsics_of(kCamera);
+  calibration.has_color = true;
+  calibration.T_color_depth.t = {-0.1, 0, 0};
+  SeenColors colors(calibration, kCamera, wave);
+  build_color_frame(colors.registration, colors.image(), kCamera, {100, 40, 120, 60}, colors.frame);
+  for (const double z : {0.5, 1.0, 8.0}) {
+    const double u = 110 - 150 * 0.1 / z;
+    CHECK(colors.frame.roi.u0 <= u && u < colors.frame.roi.u1);
+  }
+}
+
+TEST(ColorFrame, TakesTheLensOut) {
+  Calibration calibration = SeenColors::registered(kCamera);
+  calibration.depth.k[0] = -0.2;
+  calibration.depth.k[1] = 0.05;
+  // The distorted image of a pattern that is given in ideal pixels: each distorted pixel shows what lies
+  // there.
+  const auto undistorted = [&](double u, double v) {
+    Normalized p{(u - kCamera.cx) / kCamera.fx, (v - kCamera.cy) / kCamera.fy}, x = p;
+    for (int i = 0; i < 30; ++i) {
+      const Normalized d = distort(calibration.depth, x);
+      x = {x.x + p.x - d.x, x.y + p.y - d.y};
+    }
+    return wave(x.x * kCamera.fx + kCamera.cx, x.y * kCamera.fy + kCamera.cy);
+  };
+  const SeenColors colors(calibration, kCamera, [&](int u, int v) { return undistorted(u, v); });
+  for (int v = 20; v < 100; v += 9)
+    for (int u = 20; u < 140; u += 9) DOUBLES_EQUAL(wave(u, v), colors.at(u, v), 1.5);
 }

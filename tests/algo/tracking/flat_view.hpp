@@ -33,16 +33,6 @@ struct FlatView {
   }
   FlatView(const FlatView&) = delete;
   FlatView& operator=(const FlatView&) = delete;
-
-  // Grey that rises by whole levels a pixel, so that eight bits hold it exactly.
-  void paint_ramp(int start, int per_u, int per_v) {
-    const Rect& roi = view.maps.roi;
-    for (int v = roi.v0; v < roi.v1; ++v)
-      for (int u = roi.u0; u < roi.u1; ++u) {
-        const auto grey = static_cast<std::uint8_t>(start + per_u * (u - roi.u0) + per_v * (v - roi.v0));
-        color[view.maps.at(u, v)] = pack_rgb(grey, grey, grey);
-      }
-  }
 };
 
 }  // namespace st::test

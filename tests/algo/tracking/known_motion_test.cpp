@@ -2,10 +2,12 @@
 #include <CppUTest/TestHarness.h>
 
 #include <cmath>
+#include <optional>
 
 #include "algo/core/scalar_math.hpp"
 #include "algo/tracking/align.hpp"
 #include "algo/tracking/observe.hpp"
+#include "tests/algo/tracking/seen_colors.hpp"
 #include "tests/algo/volume/analytic_view.hpp"
 #include "tests/support/bound.hpp"
 
@@ -41,6 +43,7 @@ TEST_GROUP(KnownMotion) {
   BoundMemory memory{[this](Bump& bump) { scratch.bind(bump, 320, 240); }};
   Pose T0;
   View frame;
+  std::optional<SeenColors> colors;
 
   // The model from some frames at T0, and the view of it there.
   ModelView learn(const Solid& solid, const Pose& T) {
@@ -57,18 +60,25 @@ TEST_GROUP(KnownMotion) {
     return view;
   }
 
+  // The frame's colours through a camera of another exposure.
+  const ColorFrame& see(double gain, double offset) {
+    colors.emplace(kCamera, [&](int u, int v) {
+      return gain * (frame.color[static_cast<std::size_t>(v * kCamera.width + u)] & 255u) + offset;
+    });
+    return colors->frame;
+  }
+
   // What the camera sees at T, as input that starts at T0.
   AlignInput look(const Solid& solid, const ModelView& view, const Pose& T, bool color = true) {
     Rendering how;
     how.noise = 1;
     if (color) how.paint = print;
     frame = render(solid, T, how, random, kCamera);
-    ImageView<const std::uint32_t> colors;
-    if (color) colors = {frame.color.data(), kCamera.width, kCamera.height};
     AlignInput in;
+    if (color) in.color = &see(1, 0);
     in.depth_z = {frame.depth.data(), kCamera.width, kCamera.height};
     const std::size_t n = gather_points(in.depth_z, {frame.owners.data(), kCamera.width, kCamera.height}, 1,
-                                        frame.roi, kCamera, colors, points);
+                                        frame.roi, kCamera, points);
     in.points = {points.data(), n};
     in.view = view;
     in.camera = kCamera;
@@ -118,9 +128,8 @@ TEST(KnownMotion, TheColourCamerasExposureDoesNotMatter) {
   const Box box({0.16, 0.12, 0.07});
   const ModelView view = learn(box, looking_at(1.3, 0.4, 0.6));
   const Pose T = moved_about(T0, {{0.006, 0, 0}, {0, 0.03, 0}}, T0.t);
-  const AlignInput in = look(box, view, T);
-  for (std::size_t i = 0; i < in.points.size(); ++i)
-    if (points[i].luminance >= 0) points[i].luminance = 0.8f * points[i].luminance + 15;
+  AlignInput in = look(box, view, T);
+  in.color = &see(0.8, 15);
   const AlignResult result = align(in, scratch);
   DOUBLES_EQUAL(0.8, result.gain.gain, 0.08);
   DOUBLES_EQUAL(0, turn_error(T, result.T_camera_object), 0.5 * kDegree);
@@ -143,7 +152,8 @@ TEST(KnownMotion, TheFloorHoldsHeightAndUpright) {
   const Vec3 up = T0.R.col(2);
   AlignInput in = look(box, view, T0);
   in.points = {};  // nothing but priors
-  in.terms.contour = in.terms.color = false;
+  in.terms.contour = false;
+  in.color = nullptr;
   in.floor.on = true;
   in.floor.up_camera = up;
   in.floor.d = -dot(up, T0.t);  // the floor goes through the origin
@@ -163,7 +173,8 @@ TEST(KnownMotion, CovarianceShrinksWithWhatIsSeen) {
   AlignInput in = look(box, view, T0);
   const AlignResult seen = align(in, scratch);
   in.points = in.points.subspan(0, 60);
-  in.terms.contour = in.terms.color = false;
+  in.terms.contour = false;
+  in.color = nullptr;
   const AlignResult hardly = align(in, scratch);
   for (int i = 0; i < 6; ++i) {
     CHECK(seen.covariance[7 * i] > 0);

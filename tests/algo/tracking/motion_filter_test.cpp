@@ -86,6 +86,20 @@ TEST(MotionFilter, UncertaintyGrowsWithTimeAndShrinksWithAPose) {
   CHECK(filter.position_sigma_m() < soon);
 }
 
+TEST(MotionFilter, CovarianceIsTheInverseOfThePriorsInformation) {
+  MotionFilter filter = after(5, {1e-3, 3e-3});
+  filter.predict(filter.t_s() + kPeriod_s, {});
+  double covariance[36];
+  filter.covariance(covariance);
+  const MotionPrior prior = filter.prior();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      double product = 0;
+      for (int k = 0; k < 6; ++k) product += covariance[6 * i + k] * prior.information[6 * k + j];
+      DOUBLES_EQUAL(i == j ? 1 : 0, product, 1e-9);
+    }
+}
+
 TEST(MotionFilter, RatesFollowAPoseByAsMuchAsItIsSure) {
   // One frame with the same surprise, seen sharply and hardly.
   const auto rate_after = [](double sigma_m) {
@@ -185,6 +199,82 @@ TEST(MotionFilter, PublishedRatesSettleOnTheTruth) {
   DOUBLES_EQUAL(0.2, filter.output().velocity_mps.x, 0.002);
   DOUBLES_EQUAL(0.5, filter.output().angular_velocity_rps.z, 0.005);
   DOUBLES_EQUAL(0, filter.output().acceleration_mps2.x, 0.03);
+}
+
+TEST(MotionFilter, AColourImageOfTheSameInstantIsTiedFirmly) {
+  MotionFilter filter = after(5, {1e-3, 3e-3});
+  filter.predict(6 * kPeriod_s, {});
+  const ColorTime time = filter.color_time(0);
+  DOUBLES_EQUAL(0, norm(time.motion.t), 1e-12);
+  for (int i = 0; i < 6; ++i) {
+    DOUBLES_EQUAL(1, time.tie.share[i], 1e-9);
+    DOUBLES_EQUAL(0, time.tie.sigma[i], 1e-6);
+  }
+}
+
+TEST(MotionFilter, TheTieIsThatOfTheMotionBetweenTheImages) {
+  // Against samples of the state before the step, and of its acceleration.
+  const Covariance usual{1e-3, 3e-3};
+  const MotionFilter before = after(8, usual);
+  MotionFilter filter = before;
+  const MotionNoise noise;
+  filter.predict(9 * kPeriod_s, noise);
+  const double lag_s = -0.021, dt = kPeriod_s, s = dt + lag_s;
+  const ColorTime time = filter.color_time(lag_s);
+  DOUBLES_EQUAL(0, error_m(truth(9 * kPeriod_s + lag_s), time.motion * filter.pose()), 5e-4);
+  // The variances of the state follow from what it predicts over other steps.
+  const auto variance = [&](double step_s, double acceleration) {
+    MotionFilter other = before;
+    other.predict(8 * kPeriod_s + step_s, {acceleration, acceleration});
+    return 1 / (kFloorFromCamera * Vec3{other.prior().information[0], 0, 0}).x * kFloorFromCamera(0, 0);
+  };
+  const double pp = variance(1e-9, 0), one = variance(dt, 0), two = variance(2 * dt, 0);
+  const double rr = (two - 2 * one + pp) / (2 * dt * dt), pr = (one - pp - dt * dt * rr) / (2 * dt);
+  const double q = noise.acceleration_mps2 * noise.acceleration_mps2;
+  const double now = pp + 2 * dt * pr + dt * dt * rr + 0.25 * dt * dt * dt * dt * q;
+  const double both = pp + (dt + s) * pr + dt * s * rr + 0.25 * dt * dt * s * s * q;
+  const double then = pp + 2 * s * pr + s * s * rr + 0.25 * s * s * s * s * q;
+  DOUBLES_EQUAL(both / now, time.tie.share[0], 1e-3);
+  DOUBLES_EQUAL(std::sqrt(then - both * both / now), time.tie.sigma[0], 1e-5);
+}
+
+// Only colour sees the turn, and its image is 21 ms older than the depth image: when the turn begins and
+// ends, the heading must follow without swinging.
+TEST(MotionFilter, AHeadingSeenEarlierIsFollowedWithoutSwinging) {
+  const double lag_s = -0.021, sigma_rad = 0.004;
+  const auto heading = [](double t_s) { return t_s < 1 ? 0.0 : t_s < 2 ? 1.0 * (t_s - 1) : 1.0; };
+  MotionFilter filter;
+  const Pose at{Mat3{}, {0, 0, 2}};
+  filter.start(at, Mat3{}, 0);
+  double worst_rad = 0, late_rad = 0;
+  for (int k = 1; k <= 120; ++k) {
+    const double t_s = k * kPeriod_s;
+    filter.predict(t_s, {});
+    const ColorTime time = filter.color_time(lag_s);
+    // The alignment of one axis: a heading seen then, the prior of the heading now.
+    const double predicted = rotation_to_vector(filter.pose().R).z;
+    const double predicted_then = predicted + rotation_to_vector(time.motion.R).z;
+    NormalEquations seen, all;
+    const double J[6] = {0, 0, 0, 0, 0, 1};
+    seen.add(J, predicted_then - heading(t_s + lag_s), 1 / (sigma_rad * sigma_rad));
+    for (int i = 0; i < 8; ++i) all.H[9 * i] = i < 6 ? filter.prior().information[7 * i] : 1;
+    const double prior = all.H[9 * 5];
+    const TieRest guess = add_tied(seen, time.tie, all);
+    const double x = -all.g[5] / all.H[9 * 5];
+    TieRest rest = guess;  // at the solution
+    rest.mean[5] += guess.slope[5] * x;
+    Covariance covariance{1e-3, 1e-3};
+    covariance.m[35] = 1 / all.H[9 * 5];
+    CHECK(all.H[9 * 5] >= prior);
+    filter.correct({rotation_z(predicted + x), at.t}, covariance.m, rest, lag_s);
+    const double error = std::fabs(predicted + x - heading(t_s));
+    worst_rad = std::fmax(worst_rad, error);
+    const double since = t_s < 1 ? t_s : t_s < 2 ? t_s - 1 : t_s - 2;
+    if (since > 0.35) late_rad = std::fmax(late_rad, error);
+  }
+  CHECK(worst_rad < 0.07);
+  CHECK(late_rad < 0.004);
+  DOUBLES_EQUAL(0, filter.angular_velocity_rps().z, 0.02);
 }
 
 TEST(MotionFilter, TimeThatStandsStillChangesNothing) {

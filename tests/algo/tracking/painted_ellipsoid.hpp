@@ -9,6 +9,7 @@
 #include "algo/core/pose.hpp"
 #include "algo/tracking/model_view.hpp"
 #include "algo/volume/voxel.hpp"
+#include "tests/algo/tracking/seen_colors.hpp"
 
 namespace st::test {
 
@@ -76,13 +77,21 @@ struct PaintedView {
   }
 };
 
+// What a colour camera in the depth camera's place sees of it, before a grey wall.
+inline double painted_grey(const PaintedEllipsoid& thing, const Pose& T, int u, int v) {
+  Vec3 p;
+  return thing.depth(T, u, v, &p) > 0 ? PaintedEllipsoid::luminance(p) : 128.0;
+}
+
 // A frame of it before the wall, and its pixels.
 struct PaintedFrame {
   std::vector<float> z;
   std::vector<ObservedPoint> points;
   ImageView<const float> depth_z;
+  SeenColors colors;
 
-  PaintedFrame(const PaintedEllipsoid& thing, const Pose& T) {
+  PaintedFrame(const PaintedEllipsoid& thing, const Pose& T)
+      : colors(thing.camera, [&](int u, int v) { return painted_grey(thing, T, u, v); }) {
     const int width = thing.camera.width, height = thing.camera.height;
     z.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     depth_z = {z.data(), width, height};
@@ -94,7 +103,6 @@ struct PaintedFrame {
         if (!(d > 0)) continue;
         ObservedPoint point;
         point.p = to_float(T * p);
-        point.luminance = static_cast<float>(PaintedEllipsoid::luminance(p));
         point.u = static_cast<std::uint16_t>(u);
         point.v = static_cast<std::uint16_t>(v);
         points.push_back(point);

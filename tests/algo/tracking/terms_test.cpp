@@ -9,6 +9,7 @@
 #include "algo/tracking/contour_term.hpp"
 #include "algo/tracking/depth_term.hpp"
 #include "tests/algo/tracking/flat_view.hpp"
+#include "tests/algo/tracking/seen_colors.hpp"
 #include "tests/support/bound.hpp"
 
 using namespace st;
@@ -68,7 +69,7 @@ TEST(TrackingTerms, DepthJacobian) {
   const FlatView flat({60, 40, 110, 90}, n, offset);
   build_view_table(flat.view, view);
   const Vec3f p = on_pixel(90, 70, flat.view.z(90, 70)) + n * 0.006f;
-  arrange_points(std::vector<ObservedPoint>(3, {p, -1, 90, 70}), PointTable::kMost, points);
+  arrange_points(std::vector<ObservedPoint>(3, {p, 90, 70}), PointTable::kMost, points);
   NormalEquations eq;
   const DepthTermResult result =
       add_depth_term(points, points.count, view, kSmallCamera, Pose{}, kPivot, {}, eq);
@@ -86,9 +87,8 @@ TEST(TrackingTerms, DepthRefusesWhatIsTooFarAway) {
   const FlatView flat({60, 40, 110, 90}, {0, 0, -1}, -1.2f);
   build_view_table(flat.view, view);
   std::vector<ObservedPoint> seen;
-  for (const float gap : {0.0f, 0.004f, 0.2f, -0.2f})
-    seen.push_back({on_pixel(80, 60, 1.2f - gap), -1, 80, 60});
-  seen.push_back({on_pixel(10, 10, 1.2f), -1, 10, 10});  // beside the view
+  for (const float gap : {0.0f, 0.004f, 0.2f, -0.2f}) seen.push_back({on_pixel(80, 60, 1.2f - gap), 80, 60});
+  seen.push_back({on_pixel(10, 10, 1.2f), 10, 10});  // beside the view
   arrange_points(seen, PointTable::kMost, points);
   DepthTermOptions options;
   options.gate_m = 0.03f;
@@ -102,27 +102,33 @@ TEST(TrackingTerms, DepthRefusesWhatIsTooFarAway) {
 }
 
 TEST(TrackingTerms, ColourJacobianAndItsShift) {
-  FlatView flat({60, 40, 110, 90}, {0, 0, -1}, -1.2f);
-  flat.paint_ramp(10, 3, 1);
-  build_view_table(flat.view, view);
+  const auto image = [](double u, double v) { return 10 + 2 * (u - 40) + (v - 20); };
+  Calibration calibration;
+  calibration.depth = calibration.color = intrinsics_of(kSmallCamera);
+  calibration.color.fx = 130;  // a camera of its own, beside
+  calibration.T_color_depth = {rotation_from_vector({0.02, -0.03, 0.05}), {-0.02, 0.01, 0.005}};
+  const SeenColors colors(calibration, kSmallCamera,
+                          [&](int u, int v) { return std::fmin(255, std::fmax(0, image(u, v))); });
+  const Pose then{rotation_from_vector({0.1, 0.05, -0.2}), {0.01, 0.02, 0.03}};
   const ColorGain gain{1.25f, 4.0f};
-  const auto model = [](double u, double v) { return 10 + 3 * (u - 60) + (v - 40); };
-  const float u = 85.3f, v = 65.2f;
-  const auto luminance = static_cast<float>(gain.gain * model(u, v) + gain.offset + 3);
-  const Vec3f p = on_pixel(u, v, 1.2f);
+  const Vec3 p = to_double(on_pixel(85.3f, 65.2f, 1.2f));
+  const auto seen = [&](const Pose& at, double du, double dv) {
+    const Vec3 q = calibration.T_color_depth * (at * p);
+    const Intrinsics& k = calibration.color;
+    return image(k.fx * q.x / q.z + k.cx + du, k.fy * q.y / q.z + k.cy + dv);
+  };
+  const double model = (seen(then, 0, 0) - gain.offset - 3) / gain.gain;
   // Many times the same, since the term measures the scale of its residuals.
-  arrange_points(std::vector<ObservedPoint>(64, {p, luminance, 85, 65}), PointTable::kMost, points);
+  points.begin(64, PointTable::kMost);
+  for (std::size_t k = 0; k < 64; ++k) points.put(k, to_float(p), static_cast<float>(model));
   NormalEquations eq;
   const ColorTermResult result =
-      add_color_term(points, points.count, view, kSmallCamera, Pose{}, kPivot, gain, {0, 0}, {}, eq);
+      add_color_term({points, points.count, colors.frame, then}, kPivot, gain, {0, 0}, {}, eq);
   LONGS_EQUAL(64, result.used);
   check_jacobian(
       eq,
       [&](const Unknowns& x) {
-        const Vec3 q = x.motion().inverse() * to_double(p);
-        const double qu = kSmallCamera.fx * q.x / q.z + kSmallCamera.cx,
-                     qv = kSmallCamera.fy * q.y / q.z + kSmallCamera.cy;
-        return luminance - gain.gain * model(qu + x.x[6], qv + x.x[7]) - gain.offset;
+        return seen(x.motion() * then, x.x[6], x.x[7]) - gain.gain * model - gain.offset;
       },
       kN);
 }

@@ -1,7 +1,7 @@
-#include "algo/tracking/color_frame_kernel.hpp"
+#include "algo/tracking/frame_colors_kernel.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "algo/tracking/color_frame_kernel.cpp"
+#define HWY_TARGET_INCLUDE "algo/tracking/frame_colors_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -19,7 +19,7 @@ using M = hn::Mask<D>;
 
 constexpr std::uint32_t kKnown = 255u << 24;
 
-void colors(const ColorFrameKernel& k) {
+void colors(const FrameColorsKernel& k) {
   const D d;
   const DI di;
   const DU du;
@@ -73,7 +73,7 @@ namespace st {
 
 HWY_EXPORT(colors);
 
-void sample_colors(const ColorFrameKernel& work) { HWY_DYNAMIC_DISPATCH(colors)(work); }
+void sample_colors(const FrameColorsKernel& work) { HWY_DYNAMIC_DISPATCH(colors)(work); }
 
 }  // namespace st
 #endif

@@ -1,11 +1,11 @@
-// The vector part of color_frame(): plain arrays.
+// The vector part of frame_colors(): plain arrays.
 #pragma once
 
 #include <cstdint>
 
 namespace st {
 
-struct ColorFrameKernel {
+struct FrameColorsKernel {
   const float* z;  // depth image, metres, 0: none
   int width, height;
   float cx, cy, per_fx, per_fy;
@@ -16,6 +16,6 @@ struct ColorFrameKernel {
   std::uint32_t* out;  // width x height
 };
 
-void sample_colors(const ColorFrameKernel& work);
+void sample_colors(const FrameColorsKernel& work);
 
 }  // namespace st
