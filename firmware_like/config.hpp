@@ -11,11 +11,23 @@ namespace st {
 
 enum class TrackerKind { kStar, kFrameToFrame, kListing1 };
 
+enum class Mode { kObject, kScan };
+
+// Where the cube of scan mode lies. Metres, in the world frame, which is the camera's first pose (x right, y
+// down, z forward).
+struct ScanPlace {
+  double extent_m = 0;  // side of the cube; 0: from what the first frame shows
+  bool has_centre = false;
+  double centre_m[3] = {0, 0, 0};
+};
+
 struct LoopConfig {
+  Mode mode = Mode::kObject;
   TrackerKind tracker = TrackerKind::kStar;
   int keyframe_every =
       0;  // frame-to-frame: 0 never, else a keyframe is kept for so many frames (calibration stage)
-  int volume_side = 128;  // voxels a side of each object's volume
+  int volume_side = 0;  // voxels a side of each volume; 0: 128 for an object, 256 for a scene
+  ScanPlace place;      // scan mode
   // No track starts outside; empty: anywhere. On the floor, from the point below the camera: x along its axis
   // laid on the floor, y to the left.
   FixedVector<PlanePoint, 16> arena;

@@ -16,72 +16,12 @@ double wheel_base_m(const LoopParts& parts) {
 
 Loop::Loop(const LoopParts& parts, const LoopConfig& config)
     : parts_(parts),
-      config_(config),
       stages_(parts.clock),
-      degradation_(parts.source.info().frame_period_s),
-      wheels_(wheel_base_m(parts), config.camera_lag_s) {}
-
-// STAR, Listing 1: segment, align with the model, judge, fuse into the model; for every object, every frame.
-LoopEnd Loop::run() {
-  ObjectTracker& tracker = parts_.tracker;
-  while (acquire()) {
-    tracker.preprocess(input_, report_);
-    stages_.done(Stage::kPreprocess);
-    tracker.segment();
-    stages_.done(Stage::kSegment);
-    tracker.predict();
-    stages_.done(Stage::kPredict);
-    tracker.render();
-    stages_.done(Stage::kRender);
-    tracker.associate_pixels();
-    stages_.done(Stage::kAssociate);
-    tracker.align_all(ladder_step(level_));
-    stages_.done(Stage::kAlign);
-    tracker.judge_all();
-    stages_.done(Stage::kJudge);
-    tracker.integrate_all(ladder_step(level_));
-    stages_.done(Stage::kIntegrate);
-    tracker.decide_lives(ladder_step(level_));
-    stages_.done(Stage::kDecide);
-    drive();
-    stages_.done(Stage::kSend);
-    publish();
-  }
-  if (parts_.driver != nullptr) parts_.driver->stop();
-  return end_;
-}
+      wheels_(wheel_base_m(parts), config.camera_lag_s),
+      config_(config),
+      degradation_(parts.source.info().frame_period_s) {}
 
 double Loop::now_s() const { return static_cast<double>(parts_.clock.monotonic_ns()) * 1e-9; }
-
-DriverView Loop::driver_view() const {
-  DriverView view;
-  view.sight.watched = true;
-  for (const Track& track : parts_.tracker.tracks())
-    view.sight.sees = view.sight.sees || (track.active() && track.state == TrackState::kGood);
-  if (input_.complete_ns != 0)
-    view.sight.age_s = static_cast<double>(parts_.clock.monotonic_ns() - input_.complete_ns) * 1e-9;
-  view.wheels = input_.wheels;
-  parts_.tracker.see(view.objects);
-  view.trail = &wheels_;
-  view.t_s = input_.t_s;
-  view.host_now_s = input_.t_s + view.sight.age_s;
-  return view;
-}
-
-void Loop::drive() {
-  if (parts_.driver == nullptr) return;
-  const RobotFault before = parts_.driver->held_by();
-  const bool knew_robot = parts_.driver->picked().id != 0;
-  parts_.driver->decide(now_s(), driver_view());
-  parts_.driver->send();
-  const Obedience& picked = parts_.driver->picked();
-  if (!knew_robot && picked.id != 0)
-    report_.events.push_back({report_.t_s, EventKind::kSteeringObject, picked.id, picked.misfit_m,
-                              picked.lag_s, picked.base.gain});
-  const RobotFault now = parts_.driver->held_by();
-  if (now == before || now == RobotFault::kNone) return;
-  report_.events.push_back({report_.t_s, EventKind::kRobotFault, 0, static_cast<double>(now), 0, 0});
-}
 
 // The one place that waits: for the next frame, and in a replay for room in the ring of reports.
 bool Loop::acquire() {
@@ -132,7 +72,6 @@ bool Loop::stop(LoopEnd why) {
 }
 
 void Loop::publish() {
-  parts_.tracker.publish(report_);
   ++frames_;
   stages_.done(Stage::kPublish);
   stages_.end_frame();

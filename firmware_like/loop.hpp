@@ -1,12 +1,11 @@
-// The loop: one depth frame in, poses out, and a wheel command while a path is driven. Everything it calls
-// stands in algo or behind a seam of hal; everything it touches was bound and populated before run().
+// What the loops of both modes share: one depth frame in, its stages timed, its report out. Everything a loop
+// calls stands in algo or behind a seam of hal; everything it touches was bound and populated before run().
 #pragma once
 
 #include "algo/control/wheel_trail.hpp"
 #include "firmware_like/budget.hpp"
 #include "firmware_like/config.hpp"
 #include "firmware_like/degradation.hpp"
-#include "firmware_like/object_tracker.hpp"
 #include "firmware_like/robot_driver.hpp"
 #include "firmware_like/stage_clock.hpp"
 #include "hal/clock.hpp"
@@ -22,7 +21,6 @@ namespace st {
 // nothing is recorded `recorder`.
 struct LoopParts {
   FrameSource& source;
-  ObjectTracker& tracker;
   Telemetry& telemetry;
   BudgetMonitor& budget;
   const Clock& clock;
@@ -38,32 +36,36 @@ enum class LoopEnd { kSourceEnded, kTimeUp, kPathDriven, kSignal, kSourceFault, 
 class Loop {
  public:
   Loop(const LoopParts& parts, const LoopConfig& config);
+  virtual ~Loop() = default;
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
 
   // On the compute thread, inside of a SealedSection.
-  LoopEnd run();
+  virtual LoopEnd run() = 0;
 
   std::uint64_t frames() const { return frames_; }
   std::uint64_t skipped() const { return skipped_; }
   double last_t_s() const { return report_.t_s; }
 
- private:
-  bool acquire();
-  bool stop(LoopEnd why);
-  double now_s() const;
-  void drive();
-  DriverView driver_view() const;
+ protected:
+  bool acquire();  // false: the run is over, for the reason `end_`
   void publish();
+  double now_s() const;
 
   LoopParts parts_;
-  LoopConfig config_;
   StageClock stages_;
-  Degradation degradation_;
   FrameInput input_;
   WheelTrail wheels_;
   FrameReport report_;
   LoopEnd end_ = LoopEnd::kSourceEnded;
+  int level_ = 0;  // of degradation
+
+ private:
+  bool stop(LoopEnd why);
+
+  LoopConfig config_;
+  Degradation degradation_;
   ServedFrame served_;
-  int level_ = 0;
   std::uint64_t frames_ = 0, skipped_ = 0;
   double first_t_s_ = 0;
 };

@@ -32,6 +32,7 @@ ObjectTracker::ObjectTracker(const Calibration& calibration, const LoopConfig& c
              {this, &ObjectTracker::bind_points},  {this, &ObjectTracker::bind_integration}},
       calibration_(calibration),
       config_(config) {
+  if (config_.volume_side == 0) config_.volume_side = 128;
   frame_.camera = Pinhole::of(calibration.depth);
 }
 

@@ -10,6 +10,8 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::take(const FrameReport& report) {
   ++frames_;
+  scanning_ = report.has_camera;
+  camera_ = report.camera.state;
   tracked_ = 0;
   for (const ObjectSample& object : report.objects) tracked_ += object.in_tum ? 1 : 0;
 }
@@ -17,7 +19,10 @@ void ProgressLine::take(const FrameReport& report) {
 void ProgressLine::flush() {
   std::fprintf(stderr, "\rframe %llu", static_cast<unsigned long long>(frames_));
   if (expected_ > 0) std::fprintf(stderr, " of %llu", static_cast<unsigned long long>(expected_));
-  std::fprintf(stderr, ", %d object(s) tracked ", tracked_);
+  if (scanning_)
+    std::fprintf(stderr, ", camera %s ", name_of(camera_));
+  else
+    std::fprintf(stderr, ", %d object(s) tracked ", tracked_);
 }
 
 }  // namespace st

@@ -1,4 +1,4 @@
-// Frame count and objects on one line of stderr, while somebody looks.
+// Frame count, and objects or the camera's state, on one line of stderr, while somebody looks.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,8 @@ class ProgressLine final : public TelemetrySink {
  private:
   std::uint64_t expected_, frames_ = 0;
   int tracked_ = 0;
+  bool scanning_ = false;
+  TrackState camera_ = TrackState::kLost;
 };
 
 }  // namespace st

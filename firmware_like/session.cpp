@@ -8,8 +8,8 @@
 
 #include "algo/core/simd.hpp"
 #include "firmware_like/finish_run.hpp"
-#include "firmware_like/loop.hpp"
 #include "firmware_like/memory_plan.hpp"
+#include "firmware_like/mode.hpp"
 #include "firmware_like/path_file.hpp"
 #include "firmware_like/progress_line.hpp"
 #include "firmware_like/sealed_section.hpp"
@@ -115,17 +115,17 @@ SessionResult run_session(const SessionOptions& options) {
   result.folder = prepare_run_folder(options.out, info.short_name, options.force);
   if (!info.calibration_note.empty()) std::fprintf(stderr, "startrack: %s\n", info.calibration_note.c_str());
 
-  ObjectTracker tracker(info.calibration, options.loop);
+  const std::unique_ptr<ModeRun> mode = make_mode(info.calibration, options.loop);
   ReportRing ring;
-  BudgetMonitor budget(BudgetColumn::kObject, info.frame_period_s);
+  BudgetMonitor budget(mode->budget(), info.frame_period_s);
   MemoryPlan plan;
-  tracker.plan_memory(plan);
+  mode->plan_memory(plan);
   plan.add("reports on their way out", "hal/results", ring);
   Arena arena(plan.bytes());
   plan.seal(arena.bump());
   plan.print(stderr);
   warn(arena.lock());
-  tracker.start();
+  mode->start();
 
   ResultWriter writer(result.folder);
   std::optional<ProgressLine> progress;
@@ -139,9 +139,9 @@ SessionResult run_session(const SessionOptions& options) {
   if (robot)
     driver.emplace(*robot, steering_of(options), path ? &*path : nullptr,
                    server ? &server->commands() : nullptr, options.on_bump);
-  Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr,
-             server ? &*server : nullptr, recorder ? &*recorder : nullptr},
-            options.loop);
+  const std::unique_ptr<Loop> loop =
+      mode->make_loop({*source, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr,
+                       server ? &*server : nullptr, recorder ? &*recorder : nullptr});
   source->start();
   if (server) {
     std::printf("serve: port %d\n", server->port());
@@ -150,7 +150,7 @@ SessionResult run_session(const SessionOptions& options) {
   }
 
   RunEnd end;
-  const LoopEnd why = run_loop(loop, info.live, end);
+  const LoopEnd why = run_loop(*loop, info.live, end);
   if (robot) robot->close();
   source->stop();
   if (server) server->stop();
@@ -158,19 +158,15 @@ SessionResult run_session(const SessionOptions& options) {
   telemetry.stop();
   progress.reset();
 
-  end.info = {STARTRACK_VERSION, info.name,         "object", options.tracker_name,
+  end.info = {STARTRACK_VERSION, info.name,         mode->name(), options.tracker_name,
               simd_name(),       options.path_file, info.live};
-  end.frames = loop.frames();
+  end.frames = loop->frames();
   end.ending = ending_of(why);
   end.signal = stop_signal();
-  end.last_t_s = loop.last_t_s();
-  end.floor_found = tracker.floor_found();
-  end.has_floor_frame = tracker.has_floor_frame();
-  end.T_floor_camera = tracker.T_floor_camera();
+  end.last_t_s = loop->last_t_s();
   end.planned_bytes = plan.bytes();
   end.deadline_misses = budget.counts().deadline_misses;
-  ModelMeshes meshes;
-  end.objects = object_ends(tracker, meshes);
+  mode->describe(end);
   if (driver) name_steering_object(*driver, end);
   end.peak_rss_bytes = peak_rss_bytes();
   finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});

@@ -23,6 +23,7 @@ ExitCode exit_code_of(const RunEnd& end) {
   if (end.ending == Ending::kFault) return ExitCode::kDeviceFault;
   bool well = end.objects.empty();
   for (const ObjectEnd& object : end.objects) well = well || object.good_at_end || object.left_view;
+  well = well && (!end.has_camera || end.camera.good_at_end);
   if (!well) return ExitCode::kTrackFailed;
   if (end.info.live && end.deadline_misses * 1000 > end.frames) return ExitCode::kTrackFailed;
   return ExitCode::kDone;

@@ -5,6 +5,7 @@
 
 #include "firmware_like/loop.hpp"
 #include "firmware_like/model_meshes.hpp"
+#include "firmware_like/object_tracker.hpp"
 #include "hal/error.hpp"
 #include "hal/results/run_end.hpp"
 
@@ -13,7 +14,8 @@ namespace st {
 Ending ending_of(LoopEnd why);
 
 // kTrackFailed when an object was confirmed and at the end none is good and none has left through the view's
-// edge, or a live run missed more than 0.1 % of its deadlines.
+// edge, when the camera of a scan is lost at the end, or when a live run missed more than 0.1 % of its
+// deadlines.
 ExitCode exit_code_of(const RunEnd& end);
 
 // Every object that was confirmed, in the order of their numbers; with its mesh, kept by `meshes`, unless a

@@ -30,6 +30,8 @@ const char* name_of(EventKind kind) {
       return "volume_full";
     case EventKind::kInterrupted:
       return "interrupted";
+    case EventKind::kVolumeLeft:
+      return "volume_left";
   }
   return "unknown";
 }

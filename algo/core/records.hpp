@@ -43,6 +43,7 @@ enum class EventKind : std::uint8_t {
   kSteeringObject,  // obeyed the start motion; a: misfit in metres, b: camera's lag in seconds, c: gain
   kVolumeFull,      // surface outside the object's volume was dropped
   kInterrupted,     // a: signal
+  kVolumeLeft,      // scan mode, a: share of the surface in sight that lies outside of the volume
 };
 const char* name_of(EventKind kind);
 
@@ -98,6 +99,14 @@ struct ObjectSample {
   float residual_m = 0;  // RMS
 };
 
+// The hand-held camera in one frame of scan mode: a row of camera.tum when its pose is good.
+struct CameraSample {
+  TrackState state = TrackState::kLost;
+  Pose T_world_camera{};  // world: the camera's first pose
+  float inliers = 0;      // of the pixels that face a known surface, the share that the pose explains, 0-1
+  float residual_m = 0;   // RMS of those
+};
+
 // The loop's stages, in order. timing.csv has a column for each.
 enum class Stage : std::uint8_t {
   kAcquire,
@@ -122,6 +131,8 @@ struct FrameReport {
   std::uint64_t index = 0;
   double t_s = 0, device_t_s = 0;
   FixedVector<ObjectSample, kMaxObjects> objects;
+  bool has_camera = false;  // scan mode
+  CameraSample camera;
   FixedVector<Event, 24> events;
   float stage_us[kStageCount]{};
   float frame_us = 0;  // frame handed over until published, wall clock

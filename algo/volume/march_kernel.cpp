@@ -29,6 +29,7 @@ constexpr int kMostSteps = 512;
 constexpr float kTrusting = 0.9f;     // of the distance that a sample promises to be free
 constexpr float kUnseenStep = 0.75f;  // truncations: the band before a surface cannot be jumped over
 constexpr float kLeastStep = 0.75f;   // voxels
+constexpr float kSeedBand = 0.9f;     // truncations: beyond it a value says only that the surface is far
 
 struct Ray {
   V x, y, z;           // direction in voxels per metre of depth
@@ -163,8 +164,8 @@ struct March {
   M active;
 };
 
-HWY_INLINE March start(D d, float from, M lanes) {
-  return {hn::Set(d, from), hn::Zero(d), hn::Set(d, -1.0f), hn::Zero(d), lanes};
+HWY_INLINE March start(D d, V from, M lanes) {
+  return {from, hn::Zero(d), hn::Set(d, -1.0f), hn::Zero(d), lanes};
 }
 
 HWY_INLINE void advance(D d, const MarchKernel& k, const Ray& r, V end, March& m) {
@@ -237,31 +238,91 @@ HWY_INLINE VU color_at(D d, const MarchKernel& k, const Field& f, M lanes) {
   return hn::IfThenElseZero(hn::RebindMask(du, enough), word);
 }
 
-// The surface that the rays met, onto the images.
-HWY_INLINE void settle(D d, MarchKernel& k, const Ray& ray, const March& m, float* depth, std::size_t at) {
+// Surface that rays met: depth, weight of the nearest voxel (0: none) and colour.
+struct Hit {
+  V z;
+  VU weight, color;
+};
+HWY_INLINE Hit no_hit(D d) {
+  const DU du;
+  return {hn::Zero(d), hn::Zero(du), hn::Zero(du)};
+}
+
+// From a first guess z0, no more than two voxels off, to the surface.
+HWY_INLINE Hit refine(D d, const MarchKernel& k, const Ray& ray, Field f, V z0, M found) {
+  const DI di;
+  const DU du;
+  Hit hit = no_hit(d);
+  const V z1 = newton(d, f, ray, z0, hn::Mul(hn::Set(d, 2.0f), ray.metres_per_voxel));
+  f = moved_to(d, k, point_at(d, k, ray, z1), f);
+  const VI nearest = hn::Add(f.cell, hn::ConvertTo(di, hn::Add(f.fx, hn::Set(d, 0.5f))));
+  const VI safe = hn::IfThenElseZero(hn::RebindMask(di, f.valid), nearest);
+  const VU four =
+      hn::BitCast(du, hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(k.weight), safe));
+  const M on = hn::And(found, f.valid);
+  hit.weight = hn::IfThenElseZero(hn::RebindMask(du, on), hn::And(four, hn::Set(du, 255u)));
+  const M met = hn::RebindMask(d, hn::Ne(hit.weight, hn::Zero(du)));
+  hit.z = hn::IfThenElseZero(met, z1);
+  if (k.color != nullptr) hit.color = color_at(d, k, f, met);
+  return hit;
+}
+
+// Without a march, where a guess of the depth lies within the surface's band already: its value says how far
+// the surface is, and the gradient there that it is the front of one.
+HWY_INLINE Hit from_seed(D d, const MarchKernel& k, const Ray& ray, V seed, M lanes) {
+  const M has = hn::And(lanes, hn::Gt(seed, hn::Zero(d)));
+  const VI stored = nearest_value(d, k, point_at(d, k, ray, seed), has);
+  const V value = hn::Mul(hn::ConvertTo(d, stored), hn::Set(d, 1.0f / kTsdfScale));
+  const M in_band = hn::And(has, hn::Lt(hn::Abs(value), hn::Set(d, kSeedBand)));
+  if (hn::AllFalse(d, in_band)) return no_hit(d);
+  const V ahead = hn::Mul(hn::Mul(value, hn::Set(d, k.truncation_voxels)), ray.metres_per_voxel);
+  const V z0 = hn::Add(seed, hn::IfThenElseZero(in_band, ahead));
+  const Field f = field_at(d, k, point_at(d, k, ray, z0), in_band);
+  const V along = hn::Add(hn::Add(hn::Mul(f.gx, ray.x), hn::Mul(f.gy, ray.y)), hn::Mul(f.gz, ray.z));
+  // Within a voxel of the zero level by the slope there, which has to fall.
+  const M near = hn::Le(hn::Abs(f.value), hn::Mul(hn::Neg(along), ray.metres_per_voxel));
+  return refine(d, k, ray, f, z0, hn::And(in_band, hn::And(f.valid, near)));
+}
+
+HWY_INLINE Hit from_march(D d, const MarchKernel& k, const Ray& ray, const March& m) {
+  const M found = hn::Lt(m.after, hn::Zero(d));
+  if (hn::AllFalse(d, found)) return no_hit(d);
+  const V z0 = crossing(d, m);
+  return refine(d, k, ray, field_at(d, k, point_at(d, k, ray, z0), found), z0, found);
+}
+
+// What either way found, onto the images.
+HWY_INLINE void settle(D d, MarchKernel& k, const Hit& seeded, const Hit& marched, float* depth,
+                       std::size_t at) {
   const DI di;
   const DU du;
   const D8 d8;
-  const M found = hn::Lt(m.after, hn::Zero(d));
-  V z = hn::Zero(d);
-  VU color = hn::Zero(du), weight = hn::Zero(du);
-  if (!hn::AllFalse(d, found)) {
-    const V z0 = crossing(d, m);
-    Field f = field_at(d, k, point_at(d, k, ray, z0), found);
-    const V z1 = newton(d, f, ray, z0, hn::Mul(hn::Set(d, 2.0f), ray.metres_per_voxel));
-    f = moved_to(d, k, point_at(d, k, ray, z1), f);
-    const VI nearest = hn::Add(f.cell, hn::ConvertTo(di, hn::Add(f.fx, hn::Set(d, 0.5f))));
-    const VI safe = hn::IfThenElseZero(hn::RebindMask(di, f.valid), nearest);
-    const VU four =
-        hn::BitCast(du, hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(k.weight), safe));
-    weight = hn::IfThenElseZero(hn::RebindMask(du, f.valid), hn::And(four, hn::Set(du, 255u)));
-    const M hit = hn::RebindMask(d, hn::Ne(weight, hn::Zero(du)));
-    z = hn::IfThenElseZero(hit, z1);
-    color = color_at(d, k, f, hit);
-  }
-  hn::StoreU(z, d, depth);
-  hn::StoreU(color, du, k.out_color + at);
+  const auto by_seed = hn::Ne(seeded.weight, hn::Zero(du));
+  const VU weight = hn::IfThenElse(by_seed, seeded.weight, marched.weight);
+  hn::StoreU(hn::IfThenElse(hn::RebindMask(d, by_seed), seeded.z, marched.z), d, depth);
   hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di, weight)), d8, k.out_weight + at);
+  if (k.color != nullptr)
+    hn::StoreU(hn::IfThenElse(by_seed, seeded.color, marched.color), du, k.out_color + at);
+}
+
+// A row's rays, and what they still have to look for.
+struct RayRow {
+  Ray ray;
+  Hit seeded;
+  March march;
+  V end;
+};
+HWY_INLINE RayRow begin_row(D d, const MarchKernel& k, int u, int v, M lanes, float from, float to) {
+  RayRow row{ray_of(d, k, u, v), no_hit(d), start(d, hn::Set(d, from), lanes), hn::Set(d, to)};
+  if (k.seed == nullptr) return row;
+  const V seed = hn::LoadU(d, k.seed + static_cast<std::ptrdiff_t>(v) * k.seed_stride + u);
+  row.seeded = from_seed(d, k, row.ray, seed, lanes);
+  const M missed = hn::And(lanes, hn::RebindMask(d, hn::Eq(row.seeded.weight, hn::Zero(DU()))));
+  const V reach = hn::Set(d, k.seed_reach);
+  row.march.z = hn::Max(row.march.z, hn::Sub(seed, reach));
+  row.end = hn::Min(row.end, hn::Add(seed, reach));
+  row.march.active = hn::And(hn::And(missed, hn::Gt(seed, hn::Zero(d))), hn::Lt(row.march.z, row.end));
+  return row;
 }
 
 // Two rows of a tile at once: a march waits for its loads, and the other row's work fills the gaps.
@@ -269,18 +330,21 @@ HWY_INLINE void pixel_groups(D d, MarchKernel& k, int u, int v, float from, floa
                              std::size_t at) {
   const bool both = v + 1 < k.height;
   const M lanes = hn::FirstN(d, static_cast<std::size_t>(k.width - u));
-  const Ray upper = ray_of(d, k, u, v), lower = ray_of(d, k, u, v + 1);
-  March a = start(d, from, lanes), b = start(d, from, both ? lanes : hn::FirstN(d, 0));
-  const V end = hn::Set(d, to);
+  RayRow a = begin_row(d, k, u, v, lanes, from, to);
+  RayRow b = a;
+  b.march.active = hn::FirstN(d, 0);
+  if (both) b = begin_row(d, k, u, v + 1, lanes, from, to);
   for (int i = 0; i < kMostSteps; ++i) {
-    advance(d, k, upper, end, a);
-    advance(d, k, lower, end, b);
-    if (hn::AllFalse(d, hn::Or(a.active, b.active))) break;
+    if (hn::AllFalse(d, hn::Or(a.march.active, b.march.active))) break;
+    advance(d, k, a.ray, a.end, a.march);
+    advance(d, k, b.ray, b.end, b.march);
   }
   const int rays = static_cast<int>(hn::CountTrue(d, lanes));
   k.rays += both ? 2 * rays : rays;
-  settle(d, k, upper, a, depth, at);
-  if (both) settle(d, k, lower, b, depth + k.padded_stride, at + static_cast<std::size_t>(k.stride));
+  settle(d, k, a.seeded, from_march(d, k, a.ray, a.march), depth, at);
+  if (both)
+    settle(d, k, b.seeded, from_march(d, k, b.ray, b.march), depth + k.padded_stride,
+           at + static_cast<std::size_t>(k.stride));
 }
 
 // Normals from the finished depth image: over some pixels, where the gradient within one cell of a young
@@ -294,8 +358,18 @@ HWY_INLINE void shade(D d, MarchKernel& k, const float* p, int u, int v, std::si
   VU normal = hn::Zero(du);
   if (!hn::AllFalse(d, has)) {
     const V gap = slope::gap_of(d, z, slope::coarse(k.fx));
-    const slope::Slope su = slope::along(d, p, 1, k.normal_reach, z, gap);
-    const slope::Slope sv = slope::along(d, p, k.padded_stride, k.normal_reach, z, gap);
+    slope::Slope su = slope::along(d, p, 1, k.normal_reach, z, gap);
+    slope::Slope sv = slope::along(d, p, k.padded_stride, k.normal_reach, z, gap);
+    if (k.young_reach > k.normal_reach) {
+      const VU weight = hn::PromoteTo(du, hn::LoadU(D8(), k.out_weight + at));
+      const M young = hn::And(has, hn::RebindMask(d, hn::Lt(weight, hn::Set(du, k.young_weight))));
+      if (!hn::AllFalse(d, young)) {
+        const V wide_u = slope::along(d, p, 1, k.young_reach, z, gap).value;
+        const V wide_v = slope::along(d, p, k.padded_stride, k.young_reach, z, gap).value;
+        su.value = hn::IfThenElse(young, wide_u, su.value);
+        sv.value = hn::IfThenElse(young, wide_v, sv.value);
+      }
+    }
     const V du_px = hn::Sub(hn::Iota(d, static_cast<float>(u)), hn::Set(d, k.cx));
     const V dv_px = hn::Set(d, static_cast<float>(v) - k.cy);
     const slope::Normal n = slope::normal_of(d, du_px, dv_px, k.fx, k.fy, z, su.value, sv.value);
@@ -331,7 +405,7 @@ void rays(MarchKernel& work) {
       }
       for (int row = v; row < v + 2 && row < k.height; ++row) {  // the padded image is zero already
         const std::size_t empty = at + static_cast<std::size_t>(row - v) * static_cast<std::size_t>(k.stride);
-        hn::StoreU(hn::Zero(du), du, k.out_color + empty);
+        if (k.color != nullptr) hn::StoreU(hn::Zero(du), du, k.out_color + empty);
         hn::StoreU(hn::Zero(d8), d8, k.out_weight + empty);
       }
     }

@@ -5,14 +5,14 @@
 
 namespace st {
 
-inline constexpr int kRayTile = 8;    // pixels a side that share one depth range
-inline constexpr int kRayMargin = 8;  // pixels around the padded depth image: as far as normals look
+inline constexpr int kRayTile = 8;     // pixels a side that share one depth range
+inline constexpr int kRayMargin = 16;  // pixels around the padded depth image: as far as normals look
 
 struct MarchKernel {
   // Volume, in units of voxels.
   int side;
   const std::int16_t* tsdf;
-  const std::uint32_t* color;
+  const std::uint32_t* color;  // null: none is wanted
   const std::uint8_t* weight;
   float truncation_voxels;
   // Camera: a pixel's ray in voxels is eye + z * to_voxels * ((u - cx) / fx, (v - cy) / fy, 1).
@@ -21,8 +21,13 @@ struct MarchKernel {
   int width, height, stride;
   const float* nearest;  // per tile; nearest > farthest: nothing there
   const float* farthest;
-  float* depth;  // at the first pixel of the padded image
+  const float* seed;  // guess of each pixel's depth, 0: none; or null
+  int seed_stride;
+  float seed_reach;  // metres of depth round the guess that a ray looks at
+  float* depth;      // at the first pixel of the padded image
   int padded_stride, normal_reach;
+  int young_reach;             // for surface of less than young_weight; 0: the same everywhere
+  std::uint32_t young_weight;  // halves of a nominal observation
   float* z;
   std::uint32_t* normal;
   std::uint32_t* out_color;

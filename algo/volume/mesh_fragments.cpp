@@ -1,37 +1,12 @@
+#include "algo/core/disjoint_sets.hpp"
 #include "algo/volume/mesh.hpp"
 
 namespace st {
-namespace {
-
-// Disjoint sets of vertices; a root is its own parent and the smallest of its set, so that the result has one
-// form.
-class Sets {
- public:
-  explicit Sets(std::span<std::uint32_t> parent) : parent_(parent) {
-    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = static_cast<std::uint32_t>(i);
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i)
-      i = parent_[i] = parent_[parent_[i]];  // each step halves the way: bounded by the vertices
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a < b) parent_[b] = a;
-    if (b < a) parent_[a] = b;
-  }
-
- private:
-  std::span<std::uint32_t> parent_;
-};
-
-}  // namespace
 
 MeshCounts remove_fragments(std::span<MeshVertex> vertices, std::span<std::uint32_t> indices,
                             std::size_t least_triangles, std::span<std::uint32_t> scratch) {
   const std::size_t n = vertices.size();
-  Sets sets(scratch.subspan(0, n));
+  DisjointSets sets(scratch.subspan(0, n));
   const std::span<std::uint32_t> count = scratch.subspan(n, n);
   for (std::uint32_t& c : count) c = 0;
   for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {

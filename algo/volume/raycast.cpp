@@ -8,6 +8,9 @@
 namespace st {
 namespace {
 
+// Twelve frames at the nominal distance.
+constexpr std::uint32_t kYoungWeight = static_cast<std::uint32_t>(12 * kWeightUnits);
+
 constexpr int up(int n, int to) { return (n + to - 1) / to * to; }
 constexpr std::size_t area(int w, int h) { return static_cast<std::size_t>(w) * static_cast<std::size_t>(h); }
 
@@ -36,10 +39,11 @@ void for_solid(const Volume& v, const Pinhole& camera, const Rect& roi, const Po
 
 // Pixels to the outer pair that normals are fitted to: about a centimetre, which noise in a young model
 // needs.
+constexpr int kLeastReach = 3, kMostReach = 8;
 int normal_reach(const Pinhole& camera, float z_m) {
   constexpr float kSpan_m = 0.01f;
   const float pixels = kSpan_m * camera.fx / z_m;
-  return pixels > 3 ? pixels < kRayMargin ? static_cast<int>(pixels) : kRayMargin : 3;
+  return pixels > kLeastReach ? pixels < kMostReach ? static_cast<int>(pixels) : kMostReach : kLeastReach;
 }
 
 }  // namespace
@@ -60,7 +64,8 @@ void RaycastScratch::bind(Bump& memory, int max_width, int max_height) {
 }
 
 RaycastStats raycast(const Volume& volume, const Pinhole& camera, const Rect& roi,
-                     const Pose& T_camera_object, RaycastScratch& scratch, ModelMaps& out) {
+                     const Pose& T_camera_object, RaycastScratch& scratch, ModelMaps& out,
+                     const RaycastOptions& options) {
   out.roi = roi.clipped(camera.width, camera.height);
   if (out.roi.empty()) out.roi = {0, 0, 0, 0};
   out.stride = up(out.roi.width(), kRayTile);
@@ -82,7 +87,7 @@ RaycastStats raycast(const Volume& volume, const Pinhole& camera, const Rect& ro
   MarchKernel k{};
   k.side = volume.side;
   k.tsdf = volume.tsdf.data();
-  k.color = volume.color.data();
+  k.color = options.with_color ? volume.color.data() : nullptr;
   k.weight = volume.weight.data();
   const Pose T_object_camera = T_camera_object.inverse();
   const float per_voxel = 1.0f / volume.voxel_m;
@@ -105,6 +110,13 @@ RaycastStats raycast(const Volume& volume, const Pinhole& camera, const Rect& ro
   k.nearest = scratch.nearest.data();
   k.farthest = scratch.farthest.data();
   k.normal_reach = normal_reach(camera, (to_float(T_camera_object) * volume.centre()).z);
+  if (!options.guess.empty()) {
+    k.seed = options.guess.row(out.roi.v0) + out.roi.u0;
+    k.seed_stride = options.guess.width;
+    k.seed_reach = kGuessReach * volume.truncation_m;
+  }
+  k.young_reach = options.smooth_young ? kRayMargin - 2 : 0;
+  k.young_weight = kYoungWeight;
   k.padded_stride = out.stride + 2 * kRayMargin;
   const std::size_t padded = area(k.padded_stride, out.roi.height() + 2 * kRayMargin);
   std::memset(scratch.depth.data(), 0, padded * sizeof(float));

@@ -51,6 +51,19 @@ struct RaycastScratch {
   void bind(Bump& memory, int max_width, int max_height);
 };
 
+struct RaycastOptions {
+  bool with_color = true;
+  // Normals over a wider span where the surface was seen in few frames only. A sensor's noise stands still in
+  // its image; in a young model it makes slopes of its own, which tell an alignment that nothing has moved.
+  bool smooth_young = false;
+  // Depth where each pixel's surface is guessed to be, whole image; may be empty. Rays then look only within
+  // kGuessReach truncations of it, and pixels without a guess stay empty: enough to align the frame that the
+  // guesses are from, at a fraction of the march.
+  ImageView<const float> guess = {};
+};
+
+inline constexpr float kGuessReach = 3.0f;
+
 struct RaycastStats {
   int rays = 0;  // that had any solid brick in their way
   int hits = 0;
@@ -60,7 +73,8 @@ struct RaycastStats {
 // Surfaces seen from behind, or next to unseen voxels, give no pixel. The result does not depend on the
 // instruction set.
 RaycastStats raycast(const Volume& volume, const Pinhole& camera, const Rect& roi,
-                     const Pose& T_camera_object, RaycastScratch& scratch, ModelMaps& out);
+                     const Pose& T_camera_object, RaycastScratch& scratch, ModelMaps& out,
+                     const RaycastOptions& options = {});
 
 // The pixels that the solid part of the volume can fall on, clipped to the image; empty when there are none.
 Rect visible_rect(const Volume& volume, const Pinhole& camera, const Pose& T_camera_object);

@@ -57,12 +57,23 @@ ObjectFiles* ResultWriter::files_of(int id) {
 void ResultWriter::take(const FrameReport& report) {
   for (const ObjectSample& sample : report.objects)
     if (ObjectFiles* files = files_of(sample.id)) files->take(report.t_s, sample);
+  if (report.has_camera) take_camera(report.t_s, report.camera);
   for (const Event& event : report.events) {
     append_event_row(events_.line(), event);
     if (event.kind == EventKind::kEvicted) close_files_of(event.object);
   }
   append_timing_row(timing_.line(), report);
   statistics_.take(report);
+}
+
+void ResultWriter::take_camera(double t_s, const CameraSample& sample) {
+  if (sample.state != TrackState::kGood) return;
+  try {
+    if (!camera_) camera_.emplace(folder_ + "/camera.tum");
+    append_tum_row(camera_->line(), t_s, sample.T_world_camera);
+  } catch (const Failure& failure) {
+    note(failure.what());
+  }
 }
 
 // Files are closed with the track, so that a long run with many movers does not run out of file descriptors.
@@ -75,6 +86,7 @@ void ResultWriter::close_files_of(int id) {
 void ResultWriter::flush() {
   for (const auto& files : objects_)
     if (!files->flush()) note(files->error());
+  if (camera_ && !camera_->flush()) note(camera_->error());
   if (!events_.flush()) note(events_.error());
   if (!timing_.flush()) note(timing_.error());
 }
@@ -92,6 +104,8 @@ void ResultWriter::write_end(const RunEnd& end, const RunAnalysis& analysis) {
   for (const ObjectEnd& object : end.objects)
     if (!object.mesh.vertices.empty())
       write_whole_file(numbered(folder_, "object-", object.id, ".ply"), format_ply(object.mesh));
+  if (!end.camera.scene.vertices.empty())
+    write_whole_file(folder_ + "/scene.ply", format_ply(end.camera.scene));
   for (const ObjectAnalysis& object : analysis.objects)
     if (object.has_base)
       write_rows(numbered(folder_, "base-", object.id, ".csv"), "t,x,y,yaw", object.base.rows);

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,10 +38,12 @@ class ResultWriter final : public TelemetrySink {
  private:
   ObjectFiles* files_of(int id);
   void close_files_of(int id);
+  void take_camera(double t_s, const CameraSample& sample);
   void note(const std::string& error);
 
   std::string folder_;
   LineFile timing_, events_;
+  std::optional<LineFile> camera_;                     // camera.tum, from the first pose of a scan
   std::vector<std::unique_ptr<ObjectFiles>> objects_;  // open files: an object that lost its slot has none
   std::vector<int> confirmed_;                         // every object that ever had files
   TimingStatistics statistics_;

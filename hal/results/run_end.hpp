@@ -25,6 +25,14 @@ struct ObjectEnd {
   MeshView mesh;  // object frame; empty when the mesh was skipped
 };
 
+// The hand-held camera of scan mode, and what it saw.
+struct CameraEnd {
+  std::uint64_t tracked = 0, lost = 0;  // frames with a row in camera.tum, and without
+  bool good_at_end = false;
+  double pixels_aligned = 0, bricks_fused = 0;  // sums over all frames: what the work was
+  MeshView scene;                               // world frame; empty when the mesh was skipped
+};
+
 struct RunInfo {  // known at the start
   std::string version, source, mode, tracker, simd;
   std::string path_file;  // empty: no path
@@ -44,6 +52,8 @@ struct RunEnd {
   bool has_floor_frame = false;
   Pose T_floor_camera{};
   std::vector<ObjectEnd> objects;
+  bool has_camera = false;  // scan mode
+  CameraEnd camera;
   int steering_object = 0;  // the object that was picked as the robot that obeys; 0: none was
   double path_begins_t_s =
       -1;  // what was driven before was the start motion; -1: the path began with the drive

@@ -100,32 +100,37 @@ const char* name_of(Ending ending) {
 
 std::string format_summary(const RunEnd& end, const RunAnalysis& analysis, const TimingSummary& timing,
                            const std::string& hash) {
-  std::uint64_t tracked = 0, lost = 0;
+  std::uint64_t tracked = end.camera.tracked, lost = end.camera.lost;
   Json objects = Json::array();
   for (const ObjectEnd& object : end.objects) {
     tracked += object.tracked;
     lost += object.lost;
     objects.push_back(object_json(object, analysis_of(analysis, object.id)));
   }
-  const Json json = {{"version", end.info.version},
-                     {"source", end.info.source},
-                     {"mode", end.info.mode},
-                     {"simd", end.info.simd},
-                     {"frames", end.frames},
-                     {"tracked", tracked},
-                     {"lost", lost},
-                     {"ended", name_of(end.ending)},
-                     {"objects", objects},
-                     {"T_floor_camera", end.has_floor_frame ? matrix(end.T_floor_camera) : Json()},
-                     {"path", analysis.has_path ? path_json(analysis.path) : Json()},
-                     {"timing", timing_json(timing)},
-                     {"memory",
-                      {{"planned_bytes", end.planned_bytes},
-                       {"peak_rss_bytes", end.peak_rss_bytes},
-                       {"heap_calls_after_seal", end.heap_calls_after_seal},
-                       {"page_faults_after_seal", end.page_faults_after_seal}}},
-                     {"deadline_misses", end.deadline_misses},
-                     {"deterministic_hash", hash}};
+  Json json = {{"version", end.info.version},
+               {"source", end.info.source},
+               {"mode", end.info.mode},
+               {"simd", end.info.simd},
+               {"frames", end.frames},
+               {"tracked", tracked},
+               {"lost", lost},
+               {"ended", name_of(end.ending)},
+               {"objects", objects},
+               {"T_floor_camera", end.has_floor_frame ? matrix(end.T_floor_camera) : Json()},
+               {"path", analysis.has_path ? path_json(analysis.path) : Json()},
+               {"timing", timing_json(timing)},
+               {"memory",
+                {{"planned_bytes", end.planned_bytes},
+                 {"peak_rss_bytes", end.peak_rss_bytes},
+                 {"heap_calls_after_seal", end.heap_calls_after_seal},
+                 {"page_faults_after_seal", end.page_faults_after_seal}}},
+               {"deadline_misses", end.deadline_misses},
+               {"deterministic_hash", hash}};
+  if (end.has_camera) {
+    const double frames = end.frames > 0 ? static_cast<double>(end.frames) : 1.0;
+    json["scan"] = {{"pixels_aligned_mean", end.camera.pixels_aligned / frames},
+                    {"bricks_fused_mean", end.camera.bricks_fused / frames}};
+  }
   // A source named in bytes that are no UTF-8 must not lose the run its summary.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -36,8 +36,10 @@ class CameraRig {
   const DepthSensor& depth() const { return *depth_; }
 
  private:
+  Pose color_room_at(double t_s) const { return scene_.calibration.T_color_depth * scene_.camera_at(t_s); }
+  std::vector<Vec3f> lamps_at(const Pose& T_color_room) const;
+
   Scene scene_;
-  Pose T_color_room_;
   std::unique_ptr<DepthSensor> depth_;
   std::unique_ptr<ColorSensor> color_;
 };

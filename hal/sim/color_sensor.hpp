@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "algo/core/image.hpp"
@@ -27,6 +28,8 @@ class ColorSensor {
 
   void draw_still(const Mesh& mesh, const Pose& T_camera_mesh);
   void seal_still();
+  // Where the lamps hang now, colour camera frame, when the camera moves.
+  void hang_lamps(std::vector<Vec3f> lamps) { options_.lamps = std::move(lamps); }
 
   // A frame: begin_frame(), shadows, moving things, then develop() and sample().
   void begin_frame();

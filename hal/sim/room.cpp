@@ -34,16 +34,16 @@ bool all_in_view(const Intrinsics& k, const Pose& T_camera_stage, const std::vec
   return true;
 }
 
+Pose upright(double x, double y, double yaw, double z = 0) { return {rotation_z(yaw), {x, y, z}}; }
+
+}  // namespace
+
 void add_still(Scene& scene, const Mesh& mesh, const Pose& T_room_mesh) {
   MeshBuilder all;
   all.append(scene.still, Pose{});
   all.append(mesh, T_room_mesh);
   scene.still = all.take();
 }
-
-Pose upright(double x, double y, double yaw, double z = 0) { return {rotation_z(yaw), {x, y, z}}; }
-
-}  // namespace
 
 void choose_sensor(Scene& scene, Random& random) {
   Intrinsics& depth = scene.calibration.depth;

@@ -26,6 +26,9 @@ Stage place_camera(Scene& scene, const std::vector<Pose2>& places, double azimut
 void furnish(Scene& scene, const Stage& stage, const std::vector<Pose2>& places, bool with_chair,
              Random& random);
 
+// Adds to the room what never moves.
+void add_still(Scene& scene, const Mesh& mesh, const Pose& T_room_mesh);
+
 // A Kinect as they differ from one to the next: a few pixels in focal length and centre, a millimetre in the
 // colour camera.
 void choose_sensor(Scene& scene, Random& random);

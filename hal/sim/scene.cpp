@@ -8,6 +8,7 @@
 #include "algo/core/scalar_math.hpp"
 #include "hal/error.hpp"
 #include "hal/sim/actors.hpp"
+#include "hal/sim/hand_camera.hpp"
 #include "hal/sim/robots.hpp"
 #include "hal/sim/room.hpp"
 #include "hal/sim/trajectory.hpp"
@@ -32,7 +33,10 @@ constexpr const char* kNames[] = {"lab",
                                   "hand-moved-object",
                                   "chair-moved",
                                   "crowd",
-                                  "empty"};
+                                  "empty",
+                                  "scan",
+                                  "scan-fast",
+                                  "scan-wall"};
 constexpr double kTurn = 2 * kPi;
 
 // What the robots of a scene do, before there is a room round them.
@@ -186,6 +190,10 @@ Scene make_scene(const SceneOptions& options) {
   Random random(options.seed, 0x5ce7e), sensor_random(options.seed, 0x5e45),
       room_random(options.seed, 0x4004);
   choose_sensor(scene, sensor_random);
+  if (is_hand_scene(options.name)) {
+    make_hand_scene(scene, options, room_random);
+    return scene;
+  }
   const Plan plan = plan_scene(options, random);
   scene.duration_s = options.seconds > 0 ? options.seconds : plan.duration_s;
 

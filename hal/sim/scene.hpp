@@ -51,7 +51,8 @@ struct Scene {
   std::uint64_t seed = 1;
   double duration_s = 20;
   Calibration calibration;
-  Pose T_camera_room;  // depth camera, optical frame
+  Pose T_camera_room;  // depth camera, optical frame; of a camera in a hand: at time zero
+  std::function<Pose(double t_s)> camera_motion;  // T_camera_room of a camera in a hand; empty: it stands
   DepthSensorOptions depth;
   double color_noise = 4, color_exposure = 1, color_drift = 0.05;
   double host_jitter_s = 0.004;
@@ -62,6 +63,8 @@ struct Scene {
   std::vector<PresetSample> preset;  // from the moment the robot starts
   double start_s = 0;                // when the first robot starts to drive
   int first_robot_part = -1;         // the part that a simulated Create drives in a live run
+
+  Pose camera_at(double t_s) const { return camera_motion ? camera_motion(t_s) : T_camera_room; }
 };
 
 struct SceneOptions {

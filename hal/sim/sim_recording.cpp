@@ -95,11 +95,18 @@ bool written_by_simulate(const std::string& name) {
 
 }  // namespace
 
-Vec3 gravity_reading(const Scene& scene) {
+Vec3 gravity_reading(const Scene& scene, double t_s) {
   // Zero offsets of the sensor: a good half degree.
   Random random(scene.seed, 0xacce1);
   const Vec3 offset{0.08 * random.normal(), 0.08 * random.normal(), 0.08 * random.normal()};
-  return scene.T_camera_room.R.col(2) * kGravity_mps2 + offset;
+  const Pose T_camera_room = scene.camera_at(t_s);
+  Vec3 push_mps2{};
+  if (scene.camera_motion) {
+    constexpr double kStep_s = 0.01;
+    const auto eye = [&](double t) { return scene.camera_at(t).inverse().t; };
+    push_mps2 = (eye(t_s + kStep_s) - eye(t_s) * 2.0 + eye(t_s - kStep_s)) * (1 / (kStep_s * kStep_s));
+  }
+  return T_camera_room.R * (push_mps2 + Vec3{0, 0, kGravity_mps2}) + offset;
 }
 
 bool clear_recording(const std::string& folder) {
@@ -120,7 +127,6 @@ std::uint64_t write_recording(CameraRig& rig, const std::string& folder, const s
   FakenectFolder out(folder);
   HostClock clock(scene);
   Random random(scene.seed, 0x7117);
-  const Vec3 up_mps2 = gravity_reading(scene);
   const auto total =
       static_cast<std::uint64_t>(scene.duration_s * kTickRate_hz / static_cast<double>(kDepthPeriod_ticks));
   const auto color_offset = static_cast<std::int64_t>(random.uniform(0.008, 0.013) * kTickRate_hz);
@@ -144,7 +150,7 @@ std::uint64_t write_recording(CameraRig& rig, const std::string& folder, const s
     rig.depth_frame(t_s, written, depth);
     const Stamp stamp = clock.at(ticks);
     out.add('d', "pgm", stamp, depth_header, raw.data(), 2 * raw.size());
-    add_tilt(out, stamp, up_mps2, random);
+    add_tilt(out, stamp, gravity_reading(scene, t_s), random);
     truth.add(t_s, {stamp.host_s, clock.device_s(ticks), stamp.ticks, written}, rig.visibility(depth), depth);
     progress(written + 1, total);
   }

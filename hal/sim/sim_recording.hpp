@@ -26,7 +26,8 @@ bool clear_recording(const std::string& folder);
 std::uint64_t write_recording(CameraRig& rig, const std::string& folder, const std::atomic<bool>& stop,
                               const std::function<void(std::uint64_t, std::uint64_t)>& progress);
 
-// What the accelerometer reads in this scene at rest, m/s^2, camera optical frame (points up).
-Vec3 gravity_reading(const Scene& scene);
+// What the accelerometer reads in this scene, m/s^2, camera optical frame: at rest it points up; a hand's
+// pushes add to it.
+Vec3 gravity_reading(const Scene& scene, double t_s);
 
 }  // namespace st::sim

@@ -146,7 +146,6 @@ class SimSource final : public FrameSource {
   // Frames are due at fixed instants; one that comes too late is left out, and so is its index.
   void render_loop() {
     const double period_s = info_.frame_period_s;
-    const Vec3 up_mps2 = sim::gravity_reading(rig_.scene());
     sim::Random jitter(rig_.scene().seed, 0x1173);
     int writing = 1;
     for (std::uint64_t index = 0; !stop_; ++index) {
@@ -165,7 +164,8 @@ class SimSource final : public FrameSource {
       slot.color_device_t_s = color_t_s_;
       slot.device_t_s = t_s;
       slot.index = index;
-      slot.gravity_mps2 = up_mps2 + Vec3{jitter.normal(), jitter.normal(), jitter.normal()} * 0.03;
+      slot.gravity_mps2 = sim::gravity_reading(rig_.scene(), t_s) +
+                          Vec3{jitter.normal(), jitter.normal(), jitter.normal()} * 0.03;
       slot.complete_ns = system_clock().monotonic_ns();
       slot.t_s = static_cast<double>(slot.complete_ns) * 1e-9 + wall_minus_monotonic_s_;
       writing = middle_.exchange(writing | kFresh, std::memory_order_acq_rel) & ~kFresh;

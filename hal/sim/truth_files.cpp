@@ -22,6 +22,11 @@ void print_intrinsics(TextFile& out, const Intrinsics& k) {
             k.fy, k.cx, k.cy);
 }
 
+void print_pose(TextFile& out, double t_s, const Pose& T) {
+  const Quaternion q = to_quaternion(T.R);
+  out.print("%.6f %.6f %.6f %.6f %.7f %.7f %.7f %.7f\n", t_s, T.t.x, T.t.y, T.t.z, q.x, q.y, q.z, q.w);
+}
+
 void write_shape(const Mesh& mesh, const std::string& path) {
   TextFile out(path);
   out.print(
@@ -117,6 +122,7 @@ void write_preset(const Scene& scene, const std::string& path) {
 void write_true_shapes(const Scene& scene, const std::string& folder) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     write_shape(scene.objects[i].mesh, numbered(scene, folder, i, ".ply"));
+  if (scene.camera_motion) write_shape(scene.still, folder + "/truth.ply");
 }
 
 TruthFiles::TruthFiles(const Scene& scene, const std::string& folder)
@@ -127,6 +133,7 @@ TruthFiles::TruthFiles(const Scene& scene, const std::string& folder)
     poses_.push_back(std::make_unique<TextFile>(numbered(scene, folder, i, ".tum")));
     visible_.print(",%s_px,%s_frac,%s_valid", label, label, label);
   }
+  if (scene.camera_motion) poses_.push_back(std::make_unique<TextFile>(folder + "/truth.tum"));
   visible_.print(",valid_frac\n");
 }
 
@@ -140,11 +147,9 @@ void TruthFiles::add(double t_s, const FrameStamp& stamp, const std::vector<Visi
     visible_.print(",%d,%.3f,%d", seen[i].pixels, share, seen[i].valid);
     Pose T_room_object;
     if (!scene_.objects[i].motion(t_s, T_room_object)) continue;
-    const Pose T = scene_.T_camera_room * T_room_object;
-    const Quaternion q = to_quaternion(T.R);
-    poses_[i]->print("%.6f %.6f %.6f %.6f %.7f %.7f %.7f %.7f\n", stamp.host_s, T.t.x, T.t.y, T.t.z, q.x, q.y,
-                     q.z, q.w);
+    print_pose(*poses_[i], stamp.host_s, scene_.camera_at(t_s) * T_room_object);
   }
+  if (scene_.camera_motion) print_pose(*poses_.back(), stamp.host_s, scene_.camera_at(t_s).inverse());
   int valid = 0;
   for (int i = 0; i < raw.pixels(); ++i) valid += raw.data[i] != DepthSensor::kNoReading ? 1 : 0;
   visible_.print(",%.4f\n", static_cast<double>(valid) / raw.pixels());

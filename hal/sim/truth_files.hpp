@@ -38,10 +38,12 @@ struct FrameStamp {
 void write_camera_file(const Calibration& calibration, const std::string& path);
 // `t,x,y,yaw,v,w` from the robot's start, x forward; nothing is written where the scene has no robot.
 void write_preset(const Scene& scene, const std::string& path);
-// truth.ply, or truth-N.ply for several: binary, in the object's frame, with normals and colours.
+// truth.ply, or truth-N.ply for several: binary, in the object's frame, with normals and colours. Of a scene
+// that a hand-held camera sees: the room.
 void write_true_shapes(const Scene& scene, const std::string& folder);
 
-// truth.tum (truth-N.tum for several objects) and visible.csv, a line per depth frame.
+// truth.tum (truth-N.tum for several objects; of a hand-held camera: T_room_camera) and visible.csv, a line
+// per depth frame.
 class TruthFiles {
  public:
   TruthFiles(const Scene& scene, const std::string& folder);

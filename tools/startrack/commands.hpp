@@ -18,6 +18,9 @@ void add_drive(CLI::App& app, int& exit_code);
 void add_robot(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 
+void add_cut(CLI::App& app, int& exit_code);
+void add_bench(CLI::App& app, int& exit_code);
+
 void add_replay(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 

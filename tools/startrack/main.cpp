@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
   st::add_drive(app, exit_code);
   st::add_robot(app, exit_code);
   st::add_calibrate(app, exit_code);
+  st::add_cut(app, exit_code);
+  st::add_bench(app, exit_code);
   try {
     app.parse(argc, argv);
     return exit_code;

@@ -54,7 +54,11 @@ void print_run_table(const std::string& run_folder, const std::string& path_file
     std::printf("  object %-3d            tracked %llu, lost %llu frames; path %.2f m\n",
                 object["id"].get<int>(), object["tracked"].get<unsigned long long>(),
                 object["lost"].get<unsigned long long>(), object["path_length_m"].get<double>());
-  if (summary["objects"].empty()) std::printf("  objects               none: nothing moved\n");
+  if (summary["mode"] == "scan")
+    std::printf("  camera                tracked %llu, lost %llu frames\n",
+                summary["tracked"].get<unsigned long long>(), summary["lost"].get<unsigned long long>());
+  else if (summary["objects"].empty())
+    std::printf("  objects               none: nothing moved\n");
   const RunRecord run = read_run(run_folder);
   print_damage(run);
   if (!path_file.empty()) {

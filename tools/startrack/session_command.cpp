@@ -60,6 +60,15 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
       ->type_name("FILE");
   command
       .add_option_function<std::string>(
+          "--mode",
+          [&options](const std::string& name) {
+            options.loop.mode = name == "scan" ? Mode::kScan : Mode::kObject;
+          },
+          "object: the camera stands, what moves is tracked; scan: the camera moves through a still scene")
+      ->check(CLI::IsMember({"object", "scan"}))
+      ->type_name("MODE");
+  command
+      .add_option_function<std::string>(
           "--tracker",
           [&options](const std::string& name) {
             if (name == "star") {
@@ -100,8 +109,26 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
       .add_option("--camera", options.source.camera_file,
                   "calibration instead of the recording's camera.toml")
       ->type_name("FILE");
-  command.add_option("--volume", options.loop.volume_side, "voxels a side of each object's volume")
+  command
+      .add_option("--volume", options.loop.volume_side,
+                  "voxels a side of each volume (default: 128; scan: 256)")
       ->check(CLI::IsMember({128, 192, 256, 384, 512}));
+  command
+      .add_option("--extent", options.loop.place.extent_m,
+                  "scan: side of the volume in metres (default: from what the first frame shows)")
+      ->check(CLI::Range(0.3, 20.0))
+      ->type_name("METRES");
+  command
+      .add_option_function<std::vector<double>>(
+          "--centre",
+          [&options](const std::vector<double>& at) {
+            options.loop.place.has_centre = true;
+            for (std::size_t i = 0; i < 3; ++i) options.loop.place.centre_m[i] = at[i];
+          },
+          "scan: middle of the volume, metres from the first camera: right, down, ahead")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
   command.add_option("--simd", options.simd, "instruction set: SSSE3, SSE4, AVX2 or AVX3")->type_name("NAME");
   command
       .add_option_function<std::string>(

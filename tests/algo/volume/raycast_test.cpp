@@ -131,6 +131,37 @@ TEST(Raycast, ACoarserCameraSeesTheSameSurface) {
   }
 }
 
+TEST(Raycast, AGuessNearTheSurfaceFindsWhatTheMarchFinds) {
+  const Sphere ball(0.12);
+  const View view = fuse_turns(ball, 12);
+  const Pose T = looking_at(0.8, 0.33, 0.45);
+  cast(view, T, view.camera);
+  const std::vector<float> marched(bench.maps.z.begin(), bench.maps.z.end());
+  const Rect roi = bench.maps.roi;
+  how.noise = 1;
+  const View seen = render(ball, T, how, random);
+  std::vector<float> guess = seen.depth;
+  guess.resize(guess.size() + 16);
+  RaycastOptions options;
+  options.guess = {guess.data(), view.camera.width, view.camera.height};
+  raycast(bench.volume, view.camera, roi, T, bench.raycasting, bench.maps, options);
+  int both = 0, marched_only = 0, elsewhere = 0;
+  for (int v = roi.v0; v < roi.v1; ++v)
+    for (int u = roi.u0; u < roi.u1; ++u) {
+      const std::size_t i = bench.maps.at(u, v);
+      if (!(marched[i] > 0)) continue;
+      if (!(bench.maps.z[i] > 0)) {
+        ++marched_only;
+        continue;
+      }
+      ++both;
+      elsewhere += std::fabs(bench.maps.z[i] - marched[i]) > 0.0005f ? 1 : 0;
+    }
+  CHECK(both > 10000);
+  CHECK(marched_only < both / 50);  // at the outline, where the guess is the wall
+  CHECK(elsewhere < both / 25);     // an eighth of a voxel off, at grazing rays
+}
+
 TEST(Raycast, TheUnseenBackOfAModelIsNotShown) {
   const Sphere ball(0.12);
   const View view = render(ball, looking_at(0.9, 0, 0.3), how, random);

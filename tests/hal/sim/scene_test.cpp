@@ -67,7 +67,8 @@ TEST(Scene, EveryOneRendersAndShowsItsRobotWhereTheTruthSays) {
       rig.color_frame(t, 1, f.rgb.data());
       int valid = 0;
       for (const std::uint16_t r : f.raw) valid += r != DepthSensor::kNoReading ? 1 : 0;
-      CHECK_TEXT(valid > 0.4 * 640 * 480, name);
+      // A camera in a hand may look away for a while, after its first seconds.
+      if (!s.camera_motion || t < 3) CHECK_TEXT(valid > 0.4 * 640 * 480, name);
       for (std::size_t i = 0; i < s.objects.size(); ++i) {
         Pose T_room_object;
         const Visibility seen = rig.visibility(f.depth())[i];
@@ -198,7 +199,7 @@ TEST(Scene, TheLabKeepsACircleInViewAtTheRightDistance) {
 
 TEST(Scene, GravityPointsUp) {
   const Scene s = scene_named("lab", 5);
-  const Vec3 up = s.T_camera_room.R.col(2), g = gravity_reading(s);
+  const Vec3 up = s.T_camera_room.R.col(2), g = gravity_reading(s, 0);
   DOUBLES_EQUAL(9.80665, norm(g), 0.3);
   CHECK(dot(up, g) / norm(g) > 0.9995);
   CHECK(g.y < -6);  // the camera's y points down

@@ -174,3 +174,29 @@ TEST(SimRecording, APathFileIsDrivenInTheLab) {
                           (a[3] - b[3]) * (a[3] - b[3])),
                 0.03);
 }
+
+TEST(SimRecording, AHandHeldCameraHasItsWayForTruthAndItsPushesInTheAccelerometer) {
+  const fs::path into = folder / "scan";
+  record("scan", 3, into, 1.0);
+  const std::vector<std::string> poses = lines(into / "truth.tum");
+  UNSIGNED_LONGS_EQUAL(29, poses.size());
+  double before[3] = {0, 0, 0}, way_m = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    double t = 0, at[3];
+    LONGS_EQUAL(4, std::sscanf(poses[i].c_str(), "%lf %lf %lf %lf", &t, &at[0], &at[1], &at[2]));
+    const double step = std::hypot(at[0] - before[0], at[1] - before[1], at[2] - before[2]);
+    if (i > 0) CHECK(step < 0.03);
+    if (i > 0) way_m += step;
+    for (int a = 0; a < 3; ++a) before[a] = at[a];
+  }
+  CHECK(way_m > 0.1 && way_m < 0.5);
+  CHECK(fs::file_size(into / "truth.ply") > 10000);  // the room
+
+  SceneOptions o;
+  o.name = "scan";
+  o.seed = 3;
+  const Scene scene = make_scene(o);
+  const Vec3 now = gravity_reading(scene, 0.3), later = gravity_reading(scene, 0.4);
+  DOUBLES_EQUAL(9.8, norm(now), 1.5);
+  CHECK(norm(now - later) > 0.05);
+}

@@ -1,0 +1,28 @@
+// What a session runs: the part of it that differs between object and scan mode.
+#pragma once
+
+#include <memory>
+
+#include "firmware_like/budget.hpp"
+#include "firmware_like/loop.hpp"
+#include "firmware_like/memory_plan.hpp"
+#include "hal/results/run_end.hpp"
+
+namespace st {
+
+class ModeRun {
+ public:
+  virtual ~ModeRun() = default;
+  virtual const char* name() const = 0;
+  virtual BudgetColumn budget() const = 0;
+  virtual void plan_memory(MemoryPlan& plan) = 0;
+  virtual void start() = 0;  // once the plan is sealed
+  virtual std::unique_ptr<Loop> make_loop(const LoopParts& parts) = 0;
+  // After the loop: what was tracked, and its models as meshes, unless a second Ctrl-C asked for none. They
+  // live as long as this object.
+  virtual void describe(RunEnd& end) = 0;
+};
+
+std::unique_ptr<ModeRun> make_mode(const Calibration& calibration, const LoopConfig& config);
+
+}  // namespace st

@@ -1,0 +1,106 @@
+// Scan mode: everything between a depth frame and the pose of the hand-held camera, and the scene that it has
+// seen. Each public function is one stage of the loop; they run in the order in which they stand here. All
+// memory is bound once.
+#pragma once
+
+#include "algo/core/records.hpp"
+#include "algo/depth/pyramid.hpp"
+#include "algo/tracking/camera_align.hpp"
+#include "algo/tracking/camera_judge.hpp"
+#include "algo/tracking/camera_motion.hpp"
+#include "algo/tracking/frame_colors.hpp"
+#include "algo/tracking/places.hpp"
+#include "algo/volume/integrate.hpp"
+#include "algo/volume/raycast.hpp"
+#include "firmware_like/config.hpp"
+#include "firmware_like/memory_plan.hpp"
+#include "hal/results/run_end.hpp"
+
+namespace st {
+
+class ScanTracker {
+ public:
+  ScanTracker(const Calibration& calibration, const LoopConfig& config);
+  ScanTracker(const ScanTracker&) = delete;  // the memory plan holds its address
+  ScanTracker& operator=(const ScanTracker&) = delete;
+
+  // Enters everything that needs memory into the plan; once the plan is sealed, start() makes it ready for
+  // frames.
+  void plan_memory(MemoryPlan& plan);
+  void start();
+
+  void preprocess(const FrameInput& input, FrameReport& report);
+  void predict();
+  void render();
+  void align();
+  void judge();
+  void integrate();
+  void decide();  // lost, recovered, out of the volume
+  void publish(FrameReport& report);
+
+  // For the end of a run.
+  const Volume& scene() const { return volume_; }
+  const CameraEnd& count() const { return count_; }
+
+ private:
+  // One row of the memory plan: which member function takes that memory.
+  struct Part {
+    ScanTracker* tracker;
+    void (ScanTracker::*take)(Bump&);
+    void bind(Bump& memory) { (tracker->*take)(memory); }
+  };
+  void bind_images(Bump& memory);
+  void bind_volume(Bump& memory);
+  void bind_view(Bump& memory);
+  void bind_integration(Bump& memory);
+
+  void place_volume();
+  Pose place_to_try() const;
+  CameraPrior prior() const;
+  bool take_color();
+  bool upright(const Pose& T_world_camera) const;
+  void learn_up();
+  void follow();
+  void lose();
+  void prove();
+  void watch_border();
+  void log(EventKind kind, double a = 0, double b = 0);
+
+  Part parts_[4];
+  Calibration calibration_;
+  LoopConfig config_;
+  Pinhole camera_;
+  DepthTables tables_;
+  DepthPyramid depth_;
+  ImageView<std::uint32_t> color_;  // of the frame that is fused, in the depth camera's pixels
+  const FrameInput* input_ = nullptr;
+  std::uint64_t frames_ = 0;
+
+  Volume volume_;
+  ModelMaps view_;  // the scene at T_world_view_
+  Pose T_world_view_;
+  RaycastScratch raycast_scratch_;
+  IntegrateScratch integrate_scratch_;
+
+  CameraMotion motion_;
+  CameraAlignResult aligned_;
+  CameraVerdict verdict_;
+  CameraHabit habit_;
+  CameraSample camera_now_;
+  IntegrateStats fused_;
+  Places places_;
+  Vec3 up_world_{};  // by the accelerometer, over the good frames so far; zero: it never said
+
+  // Good: followed and fused. Searching: lost, a kept place is tried each frame. Proving: found again, and
+  // followed for some frames before the scene may change.
+  enum class Course { kFollowing, kSearching, kProving };
+  Course course_ = Course::kFollowing;
+  int poor_run_ = 0, proven_ = 0;
+  std::size_t tries_ = 0;  // places tried since the camera was lost
+  double lost_t_s_ = 0;
+  bool outside_ = false;  // most of what the camera sees lies outside of the volume
+  FixedVector<Event, 8> events_;
+  CameraEnd count_;
+};
+
+}  // namespace st
