@@ -1,0 +1,39 @@
+// Extrema of the DoG in x, y, z and scale, and which of them are kept (paper, section 3.3).
+#pragma once
+
+#include "algo/core/fixed_vector.hpp"
+#include "algo/recognition/scale_space.hpp"
+
+namespace st {
+
+inline constexpr int kMaxKeypoints = 200;
+
+struct Keypoint {
+  int octave = 0, level = 0;  // DoG level, 1 ... kScalesPerOctave
+  Vec3f voxel{};              // place in its octave, between voxels
+  float sigma = 0;            // in voxels of its octave
+  float contrast = 0;         // |DoG|
+};
+using Keypoints = FixedVector<Keypoint, kMaxKeypoints>;
+
+struct KeypointLimits {
+  float least_contrast_share = 0.1f;  // of the largest |DoG| of the level
+  float least_contrast = 0.004f;      // and of the input's unit
+  // Largest ratio of the DoG's principal curvatures. Along an edge one of the three is small, on a plane two
+  // are: the extremum may slide there. Test: tr^3 / det < (2 r + 1)^3 / r^2 (Lowe 2004, section 4.1, for
+  // three curvatures r, r, 1).
+  float largest_curvature_ratio = 10;
+};
+
+struct KeypointCounts {
+  int extrema = 0;       // strict extrema among their 80 neighbours
+  int low_contrast = 0;  // of these: refused for contrast
+  int flat = 0;          // for a small curvature
+  int crowded_out = 0;   // for stronger ones when there were more than kMaxKeypoints
+};
+
+// Looks through one DoG level (1 ... kScalesPerOctave) of one octave. The strongest are kept.
+void find_keypoints(const ScaleSpace& space, int octave, int level, const KeypointLimits& limits,
+                    Keypoints& found, KeypointCounts& counts);
+
+}  // namespace st
