@@ -158,6 +158,7 @@ void ObjectTracker::decide_lives(const LadderStep& step) {
   drop_doubles();
   begin_released();
   search_step(step);
+  recognition_step();
   begin_tracks();
   confirm_proven();
   freeze_background();

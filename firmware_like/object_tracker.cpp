@@ -27,9 +27,10 @@ bool moved_since_birth(const Track& track) {
 }  // namespace
 
 ObjectTracker::ObjectTracker(const Calibration& calibration, const LoopConfig& config)
-    : parts_{{this, &ObjectTracker::bind_images},  {this, &ObjectTracker::bind_segmenter},
-             {this, &ObjectTracker::bind_volumes}, {this, &ObjectTracker::bind_views},
-             {this, &ObjectTracker::bind_points},  {this, &ObjectTracker::bind_integration}},
+    : parts_{{this, &ObjectTracker::bind_images},     {this, &ObjectTracker::bind_segmenter},
+             {this, &ObjectTracker::bind_volumes},    {this, &ObjectTracker::bind_views},
+             {this, &ObjectTracker::bind_points},     {this, &ObjectTracker::bind_integration},
+             {this, &ObjectTracker::bind_recognition}},
       calibration_(calibration),
       config_(config) {
   frame_.camera = Pinhole::of(calibration.depth);
@@ -42,6 +43,7 @@ void ObjectTracker::plan_memory(MemoryPlan& plan) {
   plan.add("views of the models", "algo/tracking", parts_[3]);
   plan.add("observed points", "algo/tracking", parts_[4]);
   plan.add("work memory of the fusion", "algo/volume", parts_[5]);
+  if (knows_models()) plan.add("recognition", "algo/recognition", parts_[6]);
 }
 
 void ObjectTracker::bind_images(Bump& memory) {

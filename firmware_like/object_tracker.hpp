@@ -3,6 +3,7 @@
 #pragma once
 
 #include "algo/core/bump.hpp"
+#include "algo/recognition/recognition.hpp"
 #include "algo/segmentation/segmenter.hpp"
 #include "algo/tracking/associate.hpp"
 #include "algo/tracking/closest_point.hpp"
@@ -18,6 +19,8 @@
 
 namespace st {
 
+class ModelLibrary;
+
 // What a run's summary says of one confirmed object; outlives its track.
 struct ObjectCount {
   int id = 0;
@@ -25,6 +28,8 @@ struct ObjectCount {
   std::uint64_t tracked = 0, lost = 0;
   std::uint64_t aligned = 0, iterations = 0;  // frames with an alignment, and what those took together
   bool good_at_end = false, left_view = false;
+  int known_model = -1;  // of the database
+  Pose T_model_object{};
 };
 using ObjectCounts = FixedVector<ObjectCount, 64>;
 
@@ -37,6 +42,9 @@ class ObjectTracker {
   ObjectTracker(const Calibration& calibration, const LoopConfig& config);
   ObjectTracker(const ObjectTracker&) = delete;  // the memory plan holds its address
   ObjectTracker& operator=(const ObjectTracker&) = delete;
+
+  // The models of earlier runs, to be recognised; outlives this. Before plan_memory().
+  void know(const ModelLibrary& library) { library_ = &library; }
 
   // Enters everything that needs memory into the plan; once the plan is sealed, start() makes it ready for
   // frames.
@@ -74,6 +82,7 @@ class ObjectTracker {
   void bind_views(Bump& memory);
   void bind_points(Bump& memory);
   void bind_integration(Bump& memory);
+  void bind_recognition(Bump& memory);
 
   void update_support();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
@@ -93,6 +102,12 @@ class ObjectTracker {
   void remember(const Track& track, std::size_t k);
   void note_integrated(Track& track, const IntegrateStats& stats);
   void fuse_at_rest(Track& track, const Rect& box);
+
+  bool knows_models() const;
+  bool wants_look_up(const Track& track) const;
+  void start_recognition();
+  void recognition_step();
+  bool adopt_model(Track& track, const Recognised& answer);
 
   void confirm(Track& track);
   bool is_proven(const Track& candidate) const;
@@ -128,7 +143,7 @@ class ObjectTracker {
   ObjectCount* count_of(int id);  // null: more objects than the list holds
   void freeze_background();
 
-  Part parts_[6];
+  Part parts_[7];
   Calibration calibration_;
   LoopConfig config_;
   Frame frame_;
@@ -152,6 +167,10 @@ class ObjectTracker {
   ImageView<float> rest_z_;
   ImageView<std::uint32_t> registered_color_;  // of the objects' pixels, pack_rgb
   IntegrateScratch integrate_scratch_;
+  const ModelLibrary* library_ = nullptr;
+  Recognition recognition_;
+  std::size_t recognised_track_ = 0;
+  int recognised_id_ = 0;
   UnexplainedList unexplained_;
   Search search_;
   struct Newcomer {  // an unexplained segment that was there in the frame before, too

@@ -93,11 +93,17 @@ SessionResult run_session(const SessionOptions& options) {
   result.folder = prepare_run_folder(options.out, info.short_name, options.force);
   if (!info.calibration_note.empty()) std::fprintf(stderr, "startrack: %s\n", info.calibration_note.c_str());
 
+  std::optional<ModelStore> store;
+  ModelLibrary library;
+  if (!options.models_file.empty())
+    library.read(store.emplace(options.models_file), options.loop.volume_side);
   ObjectTracker tracker(info.calibration, options.loop);
+  tracker.know(library);
   ReportRing ring;
   BudgetMonitor budget(BudgetColumn::kObject, info.frame_period_s);
   MemoryPlan plan;
   tracker.plan_memory(plan);
+  if (!library.empty()) plan.add("known models", "firmware_like", library);
   plan.add("reports on their way out", "hal/results", ring);
   Arena arena(plan.bytes());
   plan.seal(arena.bump());
@@ -137,6 +143,11 @@ SessionResult run_session(const SessionOptions& options) {
   end.deadline_misses = budget.counts().deadline_misses;
   ModelMeshes meshes;
   end.objects = object_ends(tracker, meshes);
+  if (store) {
+    const KeepOptions keep{info.name, STARTRACK_VERSION, options.picture};
+    for (const std::string& line : keep_models(tracker, library, *store, keep, end.objects))
+      std::fprintf(stderr, "startrack: %s\n", line.c_str());
+  }
   if (driver) end.steering_object = longest_tracked(end.objects);
   end.peak_rss_bytes = peak_rss_bytes();
   finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});

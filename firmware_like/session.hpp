@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware_like/config.hpp"
+#include "firmware_like/model_keeper.hpp"
 #include "hal/create/safety_rules.hpp"
 #include "hal/error.hpp"
 #include "hal/source/frame_source.hpp"
@@ -18,7 +19,9 @@ struct SessionOptions {
   std::string path_file;  // empty: no path
   LoopConfig loop;
   std::string tracker_name = "star";
-  std::string out;  // run folder; empty: runs/DATE-TIME-SOURCE
+  std::string models_file;  // the model database; empty: none
+  PictureOf picture;        // of a model that is stored
+  std::string out;          // run folder; empty: runs/DATE-TIME-SOURCE
   bool force = false;
   std::string simd;  // empty: the best that this CPU has
 };

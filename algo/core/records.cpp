@@ -28,6 +28,10 @@ const char* name_of(EventKind kind) {
       return "volume_full";
     case EventKind::kInterrupted:
       return "interrupted";
+    case EventKind::kRecognised:
+      return "recognised";
+    case EventKind::kUnknownObject:
+      return "unknown_object";
   }
   return "unknown";
 }

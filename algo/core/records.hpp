@@ -34,6 +34,8 @@ enum class EventKind : std::uint8_t {
   kRobotFault,   // a: RobotFault code
   kVolumeFull,   // surface outside the object's volume was dropped
   kInterrupted,  // a: signal
+  kRecognised,   // a model of the database took over; a: how well it fits, 0-1, b: agreeing 3-D SIFT matches
+  kUnknownObject,  // none of the models is it; a, b: of the best
 };
 const char* name_of(EventKind kind);
 

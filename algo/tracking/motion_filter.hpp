@@ -38,6 +38,9 @@ class MotionFilter {
   // How fast it turns about the reference's z axis was wrong as well.
   void set_turn_rate(double rate_rps);
 
+  // Another frame of the same body stands for it from now on: the rates are those of its origin.
+  void rebase(const Pose& T_old_new);
+
   // Moves the estimate on to time t_s.
   void predict(double t_s, const MotionNoise& noise);
 

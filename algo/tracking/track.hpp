@@ -88,6 +88,11 @@ struct Track {
   double yaw_unwrapped = 0;  // as published, floor frame
   double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
 
+  // Recognised: its pose and model are those of a stored model's frame, in which its own frame lies there.
+  int known_model = -1;  // of the database; -1: new
+  Pose T_model_object{};
+  int look_ups = 0;  // how often it was compared with the database
+
   bool planar = true;     // rests on the floor: floor prior applies
   int off_floor_run = 0;  // frames in a row that contradict it
   int on_floor_run = 0;   // frames in a row that would allow it again

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "tools/report/run_report.hpp"
+#include "tools/startrack/model_picture.hpp"
 #include "tools/startrack/run_table.hpp"
 
 namespace st {
@@ -75,6 +76,21 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
       .add_option("--camera", options.source.camera_file,
                   "calibration instead of the recording's camera.toml")
       ->type_name("FILE");
+  command
+      .add_option("--models", options.models_file,
+                  "model database: what is in it is recognised, what is new is stored at the end")
+      ->type_name("DB");
+  command
+      .add_option_function<std::string>(
+          "--recognise",
+          [&options](const std::string& way) {
+            options.loop.recognition =
+                way == "sift" ? RecognitionWay::kMatchesAlone : RecognitionWay::kMatchesAndHeadings;
+          },
+          "where the pose of a known object may come from: sift (3-D SIFT matches alone, as in the paper) or "
+          "both (every heading is tried as well)")
+      ->check(CLI::IsMember({"sift", "both"}))
+      ->default_str("both");
   command.add_option("--volume", options.loop.volume_side, "voxels a side of each object's volume")
       ->check(CLI::IsMember({128, 192, 256, 384, 512}));
   command.add_option("--simd", options.simd, "instruction set: SSSE3, SSE4, AVX2 or AVX3")->type_name("NAME");
@@ -84,7 +100,9 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
 }
 
 int run_and_report(const SessionOptions& options) {
-  const SessionResult result = run_session(options);
+  SessionOptions with_picture = options;
+  with_picture.picture = model_thumbnail;
+  const SessionResult result = run_session(with_picture);
   if (!result.trouble.empty()) std::fprintf(stderr, "startrack: %s\n", result.trouble.c_str());
   if (result.folder.empty()) return static_cast<int>(result.code);
   print_run_table(result.folder, options.path_file);

@@ -1,0 +1,211 @@
+#include "algo/recognition/recognition.hpp"
+
+#include "algo/core/scalar_math.hpp"
+
+namespace st {
+namespace {
+
+constexpr int kSlabs = 8;  // of the appearance that one slice fills
+constexpr int kTryIterations = 8, kRefineIterations = 20;
+constexpr int kRows = 8;                 // of a match that one slice does
+constexpr float kMatchTolerance = 2.5f;  // voxels of the appearance
+
+}  // namespace
+
+void Recognition::bind(Bump& memory, int volume_side) {
+  sift_.bind(memory, kAppearanceSide);
+  matcher_.bind(memory);
+  volume_.bind(memory, volume_side);
+  seen_memory_ = memory.take<SurfacePoint>(kFitPoints);
+  model_memory_ = memory.take<SurfacePoint>(kFitPoints);
+  scratch_ = memory.take<Vec3f>(kFitPoints);
+}
+
+void Recognition::start(std::span<const KnownModel> models, const bool (&skip)[kMaxKnownModels],
+                        const RecognitionSubject& subject, RecognitionWay way) {
+  models_ = models;
+  subject_ = subject;
+  way_ = way;
+  best_ = {};
+  candidates_.clear();
+  for (std::size_t i = 0; i < models.size() && i < kMaxKnownModels; ++i)
+    if (!skip[i] && may_be(models[i].traits, subject.seen, subject.cut))
+      candidates_.push_back({static_cast<int>(i), 0, {}});
+  unpacked_ = -1;
+  stage_ = Stage::kSample;
+}
+
+bool Recognition::advance(int units) {
+  while (units > 0 && running()) {
+    units -= step();
+    if (stage_ != Stage::kAnswer) continue;
+    stage_ = Stage::kIdle;
+    return true;
+  }
+  return false;
+}
+
+int Recognition::step() {
+  switch (stage_) {
+    case Stage::kSample:
+      return sample_subject();
+    case Stage::kAppearance:
+      fill_appearance(*subject_.volume, sift_.input(), next_, next_ + kSlabs);
+      next_ += kSlabs;
+      if (next_ < kAppearanceSide) return 4;
+      sift_.start();
+      stage_ = Stage::kFeatures;
+      return 4;
+    case Stage::kFeatures: {
+      const bool describing = sift_.stage() == Sift3d::Stage::kDescribe;
+      if (sift_.step()) {
+        stage_ = Stage::kMatch;
+        next_ = 0;
+        matching_ = false;
+      }
+      return describing ? 10 : 5;
+    }
+    case Stage::kMatch:
+      return match_next();
+    case Stage::kUnpack:
+      return unpack_next();
+    case Stage::kHeadings:
+      return try_heading();
+    case Stage::kRefine:
+      return refine();
+    default:
+      return 1;
+  }
+}
+
+int Recognition::sample_subject() {
+  seen_ = seen_memory_.first(sample_surface(*subject_.volume, seen_memory_, scratch_));
+  subject_.seen.color = color_stats(*subject_.volume);
+  const Vec3 size = subject_.seen.bounds.size();
+  const double extent =
+      size.x > size.y ? (size.x > size.z ? size.x : size.z) : (size.y > size.z ? size.y : size.z);
+  place_appearance(sift_.input(), static_cast<float>(extent), to_float(subject_.seen.bounds.centre()));
+  next_ = 0;
+  stage_ = candidates_.empty() || seen_.size() < 50 ? Stage::kAnswer : Stage::kAppearance;
+  return 20;
+}
+
+int Recognition::match_next() {
+  if (next_ == static_cast<int>(candidates_.size())) {
+    rank();
+    return 1;
+  }
+  Candidate& candidate = verified();
+  const KnownModel& model = known(candidate);
+  if (!matching_) {
+    matching_ = true;
+    matcher_.start(sift_.features(), model.features);
+  }
+  for (int i = 0; i < kRows; ++i) {
+    if (!matcher_.step()) continue;
+    matcher_.finish(kMatchRatio, matches_);
+    candidate.matches = static_cast<int>(matches_.size());
+    candidate.fit =
+        fit_upright(sift_.features(), model.features, matches_, kMatchTolerance * sift_.input().voxel_m);
+    matching_ = false;
+    ++next_;
+    break;
+  }
+  return 4;
+}
+
+// Those on which more matches agree come first; of the others those of the most similar size.
+void Recognition::rank() {
+  const auto unlike = [&](const Candidate& c) {
+    return norm(known(c).traits.bounds.size() - subject_.seen.bounds.size());
+  };
+  const auto before = [&](const Candidate& a, const Candidate& b) {
+    if (a.fit.inliers != b.fit.inliers) return a.fit.inliers > b.fit.inliers;
+    return unlike(a) < unlike(b);
+  };
+  for (std::size_t i = 1; i < candidates_.size(); ++i)
+    for (std::size_t k = i; k > 0 && before(candidates_[k], candidates_[k - 1]); --k) {
+      const Candidate swapped = candidates_[k];
+      candidates_[k] = candidates_[k - 1];
+      candidates_[k - 1] = swapped;
+    }
+  while (candidates_.size() > kMostVerified) candidates_.pop_back();
+  next_ = 0;
+  stage_ = Stage::kUnpack;
+}
+
+// The next model to verify, or, after the last, the best one once more: its volume is part of the answer.
+int Recognition::unpack_next() {
+  if (next_ == static_cast<int>(candidates_.size())) {
+    if (best_.model >= 0 && unpacked_ != best_.model)
+      unpack(models_[static_cast<std::size_t>(best_.model)].volume, volume_);
+    stage_ = Stage::kAnswer;
+    return 20;
+  }
+  const Candidate& candidate = verified();
+  unpacked_ = candidate.model;
+  if (!unpack(known(candidate).volume, volume_)) {
+    ++next_;
+    return 20;
+  }
+  model_points_ = model_memory_.first(sample_surface(volume_, model_memory_, scratch_));
+  for (VolumeFit& kept : kept_) kept = {};
+  heading_ = 0;
+  stage_ = Stage::kHeadings;
+  return 40;
+}
+
+void Recognition::note(const VolumeFit& fit) {
+  VolumeFit fresh = fit;
+  for (VolumeFit& kept : kept_) {
+    if (!(fresh.score() > kept.score())) continue;
+    const VolumeFit pushed = kept;
+    kept = fresh;
+    fresh = pushed;
+  }
+}
+
+// The first try is what the matches say.
+int Recognition::try_heading() {
+  const Candidate& candidate = verified();
+  const int tries = way_ == RecognitionWay::kMatchesAlone ? 1 : 1 + kHeadings;
+  Pose start = candidate.fit.T_b_a;
+  const bool has_start = heading_ == 0 ? candidate.fit.found
+                                       : start_from_silhouette(model_points_, seen_, subject_.towards,
+                                                               2 * kPi * (heading_ - 1) / kHeadings, start);
+  if (has_start) note(fit_to_volume(volume_, seen_, start, kTryIterations));
+  if (++heading_ == tries) {
+    heading_ = 0;
+    stage_ = Stage::kRefine;
+  }
+  return 5;
+}
+
+int Recognition::refine() {
+  const Candidate& candidate = verified();
+  if (kept_[heading_].score() > 0) {
+    const VolumeFit fit = fit_to_volume(volume_, seen_, kept_[heading_].T_model_seen, kRefineIterations);
+    const bool same_model = best_.model == candidate.model;
+    if (fit.score() > best_.fit.score()) {
+      const float second = same_model ? best_.second_score : best_.fit.score();
+      best_ = {candidate.model, fit, candidate.matches, candidate.fit.inliers, second};
+    } else if (!same_model && fit.score() > best_.second_score) {
+      best_.second_score = fit.score();
+    }
+  }
+  if (++heading_ == kKept) {
+    ++next_;
+    stage_ = Stage::kUnpack;
+  }
+  return 10;
+}
+
+bool is_sure(const Recognised& r) {
+  constexpr float kExplained = 0.88f, kLikeness = 0.35f, kAhead = 0.02f;
+  constexpr int kColoured = 60;
+  if (r.model < 0 || r.fit.explained < kExplained) return false;
+  if (r.fit.colored >= kColoured && r.fit.likeness < kLikeness) return false;
+  return r.fit.score() > r.second_score + kAhead;
+}
+
+}  // namespace st
