@@ -17,6 +17,8 @@ void add_create_sim(CLI::App& app, int& exit_code);
 void add_drive(CLI::App& app, int& exit_code);
 void add_robot(CLI::App& app, int& exit_code);
 
+void add_models(CLI::App& app, int& exit_code);
+
 void add_replay(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   st::add_create_sim(app, exit_code);
   st::add_drive(app, exit_code);
   st::add_robot(app, exit_code);
+  st::add_models(app, exit_code);
   try {
     app.parse(argc, argv);
     return exit_code;
