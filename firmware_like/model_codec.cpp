@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "algo/recognition/appearance.hpp"
+#include "algo/recognition/volume_fit.hpp"
 #include "firmware_like/heap_memory.hpp"
 #include "hal/error.hpp"
 #include "hal/models/packed_bytes.hpp"
@@ -179,16 +180,18 @@ OwnedModel decode_model(const ModelContent& content, const std::string& name) {
 OwnedModel describe_volume(const Volume& volume, const ModelTraits& traits) {
   OwnedModel model;
   model.traits = traits;
+  std::vector<SurfacePoint> points(kFitPoints);
+  std::vector<Vec3f> scratch(kFitPoints);
+  points.resize(sample_surface(volume, points, scratch));
+  model.traits.bounds = surface_bounds(points);
   model.traits.color = color_stats(volume);
   model.bricks.resize(count_packed(volume));
   model.volume = pack(volume, model.bricks);
   Sift3d sift;
   const HeapMemory memory([&](Bump& bump) { sift.bind(bump, kAppearanceSide); });
-  const Vec3 size = traits.bounds.size();
-  place_appearance(sift.input(), static_cast<float>(std::fmax(size.x, std::fmax(size.y, size.z))),
-                   to_float(traits.bounds.centre()));
-  fill_appearance(volume, sift.input(), 0, kAppearanceSide);
-  sift.start();
+  place_appearance(sift.input(), model.traits.bounds);
+  fill_appearance(volume, appearance_of(model.traits), sift.input(), 0, kAppearanceSide);
+  sift.start(kObjectKeypoints);
   while (!sift.step()) {
   }
   const FeatureSet set = sift.features();

@@ -56,7 +56,7 @@ class Keeper {
     }
     if (track == nullptr || !is_worth_it(count, *track)) return;
     const ModelTraits traits = traits_of(*track);
-    const Recognised same = find_double(library_.models(), track->volume, traits);
+    const Recognised same = find_double(library_.models(), track->volume);
     if (same.model >= 0) {  // known after all, from its sides that came into sight later
       const auto known = static_cast<std::size_t>(same.model);
       name(object, library_.entry(known));
@@ -130,13 +130,12 @@ std::vector<std::string> keep_models(const ObjectTracker& tracker, const ModelLi
   return keeper.take_said();
 }
 
-Recognised find_double(std::span<const KnownModel> models, const Volume& volume, const ModelTraits& traits) {
+Recognised find_double(std::span<const KnownModel> models, const Volume& volume) {
   if (models.empty()) return {};
   Recognition recognition;
   const HeapMemory memory([&](Bump& bump) { recognition.bind(bump, volume.side); });
   RecognitionSubject subject;
   subject.volume = &volume;
-  subject.seen = traits;
   subject.towards = {1, 0, 0};
   constexpr bool kNone[kMaxKnownModels]{};
   recognition.start(models, kNone, subject, RecognitionWay::kMatchesAndHeadings);

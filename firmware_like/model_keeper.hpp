@@ -28,6 +28,6 @@ std::vector<std::string> keep_models(const ObjectTracker& tracker, const ModelLi
                                      std::vector<ObjectEnd>& objects);
 
 // The stored model that a whole volume is, compared at leisure; model -1: none.
-Recognised find_double(std::span<const KnownModel> models, const Volume& volume, const ModelTraits& traits);
+Recognised find_double(std::span<const KnownModel> models, const Volume& volume);
 
 }  // namespace st

@@ -34,7 +34,6 @@ void ObjectTracker::start_recognition() {
         taken[static_cast<std::size_t>(other.known_model)] = true;
     RecognitionSubject subject;
     subject.volume = &track.volume;
-    subject.seen.bounds = track.bounds;
     const Vec3 camera = track.T_camera_object.inverse().t - track.bounds.centre();
     subject.towards = to_float(normalized(Vec3{camera.x, camera.y, 0}));
     subject.cut = track.cut();
@@ -91,12 +90,19 @@ bool ObjectTracker::adopt_model(Track& track, const Recognised& answer) {
   const KnownModel& model = library_->models()[static_cast<std::size_t>(answer.model)];
   track.T_model_object = aligned.T_camera_object.inverse() * track.T_camera_object;
   const Pose T_object_model = track.T_model_object.inverse();
+  Bounds bounds;  // what the track has seen, and the model
+  for (int i = 0; i < 8; ++i)
+    bounds.include(track.T_model_object * Vec3{(i & 1) != 0 ? track.bounds.low.x : track.bounds.high.x,
+                                               (i & 2) != 0 ? track.bounds.low.y : track.bounds.high.y,
+                                               (i & 4) != 0 ? track.bounds.low.z : track.bounds.high.z});
   track.known_model = answer.model;
   track.motion.rebase(T_object_model);
   track.T_camera_object = track.T_camera_object * T_object_model;
   track.T_last_good = track.T_last_good * T_object_model;
   track.T_birth = track.T_birth * T_object_model;
-  track.bounds = model.traits.bounds;
+  bounds.include(model.traits.bounds.low);
+  bounds.include(model.traits.bounds.high);
+  track.bounds = bounds;
   track.sides = model.traits.sides;
   track.integrated = static_cast<int>(model.traits.integrated);
   track.drive.reset();

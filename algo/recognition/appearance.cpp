@@ -5,22 +5,48 @@
 namespace st {
 namespace {
 
-constexpr float kDark = 0.3f, kUncoloured = 0.65f, kReachVoxels = 1.5f;
+constexpr float kDark = 0.15f, kMiddle = 0.5f;
 
-float luminance_of(std::uint32_t c) {
-  if (color_trust_of(c) == 0) return kUncoloured;
-  const float grey = 0.299f * static_cast<float>(red_of(c)) + 0.587f * static_cast<float>(green_of(c)) +
-                     0.114f * static_cast<float>(blue_of(c));
-  return kDark + (1 - kDark) * grey / 255;
+// The same in any light: the surface's mean is kMiddle.
+float brightness_of(const ColorSample& c, const Appearance& how) {
+  if (!c.valid || !(how.mean_luminance > 0)) return kMiddle;
+  const float grey = 0.299f * c.r + 0.587f * c.g + 0.114f * c.b;
+  const float value = kDark + (kMiddle - kDark) * grey / how.mean_luminance;
+  return value < 1 ? value : 1;
 }
 
-// The volume's voxel nearest to p; -1: outside.
-std::ptrdiff_t nearest_voxel(const Volume& v, const Vec3f& p) {
+// The volume's distance in the voxel nearest to p, metres; +truncation where nothing is known.
+float coarse_distance_m(const Volume& v, const Vec3f& p) {
   const Vec3f q = (p - v.origin) * (1.0f / v.voxel_m) + Vec3f{0.5f, 0.5f, 0.5f};
   const float n = static_cast<float>(v.side);
-  if (!(q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x < n && q.y < n && q.z < n)) return -1;
-  return static_cast<std::ptrdiff_t>(
-      v.index(static_cast<int>(q.x), static_cast<int>(q.y), static_cast<int>(q.z)));
+  if (!(q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x < n && q.y < n && q.z < n)) return v.truncation_m;
+  const std::int16_t tsdf =
+      v.tsdf[v.index(static_cast<int>(q.x), static_cast<int>(q.y), static_cast<int>(q.z))];
+  return tsdf == kUnseen ? v.truncation_m : static_cast<float>(tsdf) * v.truncation_m / kTsdfScale;
+}
+
+void fill_column(const Volume& v, const Appearance& how, const Grid& grid, int x, int y) {
+  float print = 0;  // of the topmost surface; 0: still above it
+  for (int z = grid.side - 1; z >= 0; --z) {
+    float& out = grid(x, y, z);
+    out = 0;
+    const Vec3f p = grid.position({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+    // The floor cuts its voxel where it lies in it.
+    const float above_floor = (p.z - how.floor_z_m) / grid.voxel_m + 0.5f;
+    if (above_floor <= 0) continue;
+    const float distance_m = coarse_distance_m(v, p);
+    const bool at_surface = std::fabs(distance_m) < 0.75f * grid.voxel_m;
+    if (print == 0 && distance_m > 0.5f * grid.voxel_m) continue;
+    float brightness = print;
+    if (at_surface || print == 0) {
+      const ColorSample color = sample_color(v, p);
+      if (color.valid || print == 0) brightness = brightness_of(color, how);
+      if (print == 0 && (color.valid || distance_m <= 0)) print = brightness;
+    }
+    const bool on_top = distance_m > -0.5f * grid.voxel_m && distance_m < 0.5f * grid.voxel_m;
+    const float occupancy = on_top ? 0.5f - distance_m / grid.voxel_m : 1.0f;
+    out = brightness * occupancy * (above_floor < 1 ? above_floor : 1.0f);
+  }
 }
 
 }  // namespace
@@ -32,30 +58,17 @@ float appearance_voxel_m(float extent_m) {
   return voxel_m;
 }
 
-void place_appearance(Grid& grid, float extent_m, const Vec3f& centre) {
-  grid.voxel_m = appearance_voxel_m(extent_m);
+void place_appearance(Grid& grid, const Bounds& bounds) {
+  const Vec3 size = bounds.size();
+  const double wide = size.x > size.y ? size.x : size.y;
+  grid.voxel_m = appearance_voxel_m(static_cast<float>(wide > size.z ? wide : size.z));
   const float half = 0.5f * static_cast<float>(grid.side - 1) * grid.voxel_m;
-  grid.origin_m = centre - Vec3f{half, half, half};
+  grid.origin_m = to_float(bounds.centre()) - Vec3f{half, half, half};
 }
 
-void fill_appearance(const Volume& v, const Grid& grid, int z0, int z1) {
-  const float reach_m = kReachVoxels * grid.voxel_m, to_m = v.truncation_m / kTsdfScale;
-  for (int z = z0; z < z1; ++z)
-    for (int y = 0; y < grid.side; ++y)
-      for (int x = 0; x < grid.side; ++x) {
-        float& out = grid(x, y, z);
-        out = 0;
-        const Vec3f p = grid.position({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
-        const std::ptrdiff_t at = nearest_voxel(v, p);
-        if (at < 0) continue;
-        const auto i = static_cast<std::size_t>(at);
-        const std::int16_t tsdf = v.tsdf[i];
-        // Beyond the truncation the distance is not known; there it only says: not here.
-        if (tsdf == kUnseen || tsdf >= 32767 || tsdf <= -32767) continue;
-        const SdfSample between = sample(v, p);
-        const float distance_m = std::fabs(between.valid ? between.sdf_m : static_cast<float>(tsdf) * to_m);
-        if (distance_m < reach_m) out = (1 - distance_m / reach_m) * luminance_of(v.color[i]);
-      }
+void fill_appearance(const Volume& volume, const Appearance& how, const Grid& grid, int y0, int y1) {
+  for (int y = y0; y < y1; ++y)
+    for (int x = 0; x < grid.side; ++x) fill_column(volume, how, grid, x, y);
 }
 
 }  // namespace st

@@ -18,15 +18,16 @@ struct Around {
   }
 };
 
-// A strict extremum among the 80 neighbours in x, y, z and scale.
-bool is_extremum(const Around& dog, float value) {
+// A strict extremum among its neighbours in x, y, z and scale.
+bool is_extremum(const Around& dog, float value, Neighbours neighbours) {
   const float sign = value > 0 ? 1.0f : -1.0f, strength = sign * value;
   for (int l = 0; l < 3; ++l)
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
           const int level = l == 0 ? 0 : l == 1 ? -1 : 1;
-          if (level == 0 && x == 0 && y == 0 && z == 0) continue;
+          const int off = (x != 0 ? 1 : 0) + (y != 0 ? 1 : 0) + (z != 0 ? 1 : 0) + (level != 0 ? 1 : 0);
+          if (off == 0 || (off > 1 && neighbours == Neighbours::kNearest8)) continue;
           if (sign * dog(x, y, z, level) >= strength) return false;
         }
   return true;
@@ -114,7 +115,7 @@ void find_keypoints(const ScaleSpace& space, int octave, int level, const Keypoi
         if (std::fabs(value) < 0.1f * least || value == 0) continue;
         const Around dog{
             space, octave, level, static_cast<std::ptrdiff_t>(at), n, static_cast<std::ptrdiff_t>(n) * n};
-        if (!is_extremum(dog, value)) continue;
+        if (!is_extremum(dog, value, limits.neighbours)) continue;
         ++counts.extrema;
         if (std::fabs(value) < least) {
           ++counts.low_contrast;

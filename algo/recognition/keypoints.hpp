@@ -1,6 +1,8 @@
 // Extrema of the DoG in x, y, z and scale, and which of them are kept (paper, section 3.3).
 #pragma once
 
+#include <cstdint>
+
 #include "algo/core/fixed_vector.hpp"
 #include "algo/recognition/scale_space.hpp"
 
@@ -16,7 +18,13 @@ struct Keypoint {
 };
 using Keypoints = FixedVector<Keypoint, kMaxKeypoints>;
 
+// Of which neighbours an extremum is one: all 80 in x, y, z and scale (Lowe 2004, in three dimensions), or
+// the six beside it and the two of its own place in the scales above and below (Rister et al. 2017), which
+// finds more on things with few details.
+enum class Neighbours : std::uint8_t { kAll80, kNearest8 };
+
 struct KeypointLimits {
+  Neighbours neighbours = Neighbours::kAll80;
   float least_contrast_share = 0.1f;  // of the largest |DoG| of the level
   float least_contrast = 0.004f;      // and of the input's unit
   // Largest ratio of the DoG's principal curvatures. Along an edge one of the three is small, on a plane two
@@ -26,7 +34,7 @@ struct KeypointLimits {
 };
 
 struct KeypointCounts {
-  int extrema = 0;       // strict extrema among their 80 neighbours
+  int extrema = 0;       // strict extrema among their neighbours
   int low_contrast = 0;  // of these: refused for contrast
   int flat = 0;          // for a small curvature
   int crowded_out = 0;   // for stronger ones when there were more than kMaxKeypoints

@@ -30,6 +30,10 @@ ColorStats color_stats(const Volume& v) {
   return stats;
 }
 
+Appearance appearance_of(const ModelTraits& traits) {
+  return {static_cast<float>(traits.bounds.low.z), traits.color.luminance};
+}
+
 bool may_be(const ModelTraits& model, const ModelTraits& seen, bool cut) {
   constexpr float kMostHueApart = 0.15f;
   if (!size_fits(model.bounds, seen.bounds, cut)) return false;

@@ -1,6 +1,7 @@
 // An object that was met before, as the recognition needs it, and how one is described.
 #pragma once
 
+#include "algo/recognition/appearance.hpp"
 #include "algo/recognition/sift3d.hpp"
 #include "algo/tracking/track.hpp"
 #include "algo/volume/packed_volume.hpp"
@@ -26,6 +27,11 @@ struct ModelTraits {
   SeenSides sides;
   std::uint32_t integrated = 0;  // frames
 };
+
+// How 3-D SIFT looks at it, and which keypoints it keeps of it: robots have few details, so that the loose
+// rules find a few dozen where the strict ones find three.
+Appearance appearance_of(const ModelTraits& traits);
+inline constexpr KeypointLimits kObjectKeypoints{Neighbours::kNearest8, 0.02f, 0.002f, 50};
 
 struct KnownModel {
   PackedVolume volume;

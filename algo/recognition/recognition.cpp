@@ -29,8 +29,7 @@ void Recognition::start(std::span<const KnownModel> models, const bool (&skip)[k
   best_ = {};
   candidates_.clear();
   for (std::size_t i = 0; i < models.size() && i < kMaxKnownModels; ++i)
-    if (!skip[i] && may_be(models[i].traits, subject.seen, subject.cut))
-      candidates_.push_back({static_cast<int>(i), 0, {}});
+    if (!skip[i]) candidates_.push_back({static_cast<int>(i), 0, {}});
   unpacked_ = -1;
   stage_ = Stage::kSample;
 }
@@ -50,10 +49,10 @@ int Recognition::step() {
     case Stage::kSample:
       return sample_subject();
     case Stage::kAppearance:
-      fill_appearance(*subject_.volume, sift_.input(), next_, next_ + kSlabs);
+      fill_appearance(*subject_.volume, appearance_of(traits_), sift_.input(), next_, next_ + kSlabs);
       next_ += kSlabs;
       if (next_ < kAppearanceSide) return 4;
-      sift_.start();
+      sift_.start(kObjectKeypoints);
       stage_ = Stage::kFeatures;
       return 4;
     case Stage::kFeatures: {
@@ -80,14 +79,20 @@ int Recognition::step() {
 
 int Recognition::sample_subject() {
   seen_ = seen_memory_.first(sample_surface(*subject_.volume, seen_memory_, scratch_));
-  subject_.seen.color = color_stats(*subject_.volume);
-  const Vec3 size = subject_.seen.bounds.size();
-  const double extent =
-      size.x > size.y ? (size.x > size.z ? size.x : size.z) : (size.y > size.z ? size.y : size.z);
-  place_appearance(sift_.input(), static_cast<float>(extent), to_float(subject_.seen.bounds.centre()));
+  traits_ = {};
+  traits_.color = color_stats(*subject_.volume);
+  traits_.bounds = surface_bounds(seen_);
+  gate();
+  place_appearance(sift_.input(), traits_.bounds);
   next_ = 0;
   stage_ = candidates_.empty() || seen_.size() < 50 ? Stage::kAnswer : Stage::kAppearance;
   return 20;
+}
+
+// Leaves those that the object may be.
+void Recognition::gate() {
+  for (std::size_t i = candidates_.size(); i-- > 0;)
+    if (!may_be(known(candidates_[i]).traits, traits_, subject_.cut)) candidates_.erase(i);
 }
 
 int Recognition::match_next() {
@@ -117,7 +122,7 @@ int Recognition::match_next() {
 // Those on which more matches agree come first; of the others those of the most similar size.
 void Recognition::rank() {
   const auto unlike = [&](const Candidate& c) {
-    return norm(known(c).traits.bounds.size() - subject_.seen.bounds.size());
+    return norm(known(c).traits.bounds.size() - traits_.bounds.size());
   };
   const auto before = [&](const Candidate& a, const Candidate& b) {
     if (a.fit.inliers != b.fit.inliers) return a.fit.inliers > b.fit.inliers;

@@ -19,8 +19,7 @@ enum class RecognitionWay : std::uint8_t { kMatchesAndHeadings, kMatchesAlone };
 
 struct RecognitionSubject {
   const Volume* volume = nullptr;  // must stay as it is, or grow, until the answer
-  ModelTraits seen;
-  Vec3f towards{};  // horizontal unit vector to the camera, object frame
+  Vec3f towards{};                 // horizontal unit vector to the camera, object frame
   bool cut = false;
 };
 
@@ -60,6 +59,7 @@ class Recognition {
 
   int step();  // one slice; its cost in units
   int sample_subject();
+  void gate();
   int match_next();
   void rank();
   int unpack_next();
@@ -72,6 +72,7 @@ class Recognition {
   Stage stage_ = Stage::kIdle;
   RecognitionWay way_ = RecognitionWay::kMatchesAndHeadings;
   RecognitionSubject subject_;
+  ModelTraits traits_;  // of the subject
   std::span<const KnownModel> models_;
   Sift3d sift_;
   Matcher matcher_;

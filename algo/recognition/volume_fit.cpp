@@ -57,6 +57,39 @@ struct Correlation {
   }
 };
 
+struct Range {
+  float low = 0, high = 0;
+};
+
+// Without the outermost 2 % on each side; by counting in bins, linearly within the last one.
+Range trimmed_range(std::span<const SurfacePoint> points, const Vec3f& along) {
+  constexpr int kBins = 256;
+  float low = 1e9f, high = -1e9f;
+  for (const SurfacePoint& s : points) {
+    const float x = dot(s.p, along);
+    low = x < low ? x : low;
+    high = x > high ? x : high;
+  }
+  if (!(high > low)) return {low, high};
+  const float width = (high - low) / kBins;
+  int bins[kBins]{};
+  for (const SurfacePoint& s : points) {
+    const int i = static_cast<int>((dot(s.p, along) - low) / width);
+    ++bins[i < kBins ? i : kBins - 1];
+  }
+  const int trim = static_cast<int>(points.size() / 50);
+  const auto inwards = [&](bool up) {
+    for (int k = 0, sum = 0; k < kBins; ++k) {
+      const int count = bins[up ? k : kBins - 1 - k];
+      if (sum + count > trim)
+        return (static_cast<float>(k) + static_cast<float>(trim - sum) / static_cast<float>(count)) * width;
+      sum += count;
+    }
+    return 0.0f;
+  };
+  return {low + inwards(true), high - inwards(false)};
+}
+
 }  // namespace
 
 std::size_t sample_surface(const Volume& volume, std::span<SurfacePoint> out, std::span<Vec3f> scratch) {
@@ -103,31 +136,20 @@ VolumeFit fit_to_volume(const Volume& model, std::span<const SurfacePoint> seen,
 }
 
 Silhouette silhouette(std::span<const SurfacePoint> points, const Vec3f& towards) {
-  constexpr int kBins = 128;
-  constexpr float kReach_m = 1.5f;
-  const Vec3f side{-towards.y, towards.x, 0};
-  int depth[kBins]{}, across[kBins]{};
-  const auto bin = [](float x) {
-    const int i = static_cast<int>((x + kReach_m) / (2 * kReach_m) * kBins);
-    return i < 0 ? 0 : i >= kBins ? kBins - 1 : i;
-  };
-  for (const SurfacePoint& s : points) ++depth[bin(dot(s.p, towards))], ++across[bin(dot(s.p, side))];
-  const int trim = static_cast<int>(points.size() / 50);
-  // Within the bin where the count passes the trim, linearly.
-  const auto from_low = [&](const int(&bins)[kBins], bool up) {
-    int sum = 0;
-    for (int k = 0; k < kBins; ++k) {
-      const int i = up ? k : kBins - 1 - k;
-      if (sum + bins[i] > trim) {
-        const float share = static_cast<float>(trim - sum) / static_cast<float>(bins[i]);
-        const float edge = up ? static_cast<float>(i) + share : static_cast<float>(i + 1) - share;
-        return edge * 2 * kReach_m / kBins - kReach_m;
-      }
-      sum += bins[i];
-    }
-    return 0.0f;
-  };
-  return {from_low(depth, false), from_low(across, true), from_low(across, false)};
+  const Range across = trimmed_range(points, {-towards.y, towards.x, 0});
+  return {trimmed_range(points, towards).high, across.low, across.high};
+}
+
+Bounds surface_bounds(std::span<const SurfacePoint> points) {
+  Bounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3f along{};
+    along[axis] = 1;
+    const Range range = trimmed_range(points, along);
+    bounds.low[axis] = static_cast<double>(range.low);
+    bounds.high[axis] = static_cast<double>(range.high);
+  }
+  return bounds;
 }
 
 bool start_from_silhouette(std::span<const SurfacePoint> model, std::span<const SurfacePoint> seen,

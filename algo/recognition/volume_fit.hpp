@@ -6,6 +6,7 @@
 #include <span>
 
 #include "algo/core/pose.hpp"
+#include "algo/tracking/track.hpp"
 #include "algo/volume/volume.hpp"
 
 namespace st {
@@ -42,6 +43,9 @@ struct Silhouette {
 };
 // `towards`: horizontal unit vector to the viewer. Without the outermost 2 % on each side.
 Silhouette silhouette(std::span<const SurfacePoint> points, const Vec3f& towards);
+
+// The box around the points, trimmed in the same way: floor that clings to an object does not widen it.
+Bounds surface_bounds(std::span<const SurfacePoint> points);
 
 // The motion with this turn about z that lays the seen silhouette over the model's. `towards`: to the viewer,
 // in the seen frame. False when the model is far wider or narrower from there.
