@@ -141,7 +141,7 @@ Recognised find_double(std::span<const KnownModel> models, const Volume& volume)
   recognition.start(models, kNone, subject, RecognitionWay::kMatchesAndHeadings);
   while (!recognition.advance(Recognition::kUnitsPerFrame)) {
   }
-  return is_sure(recognition.best()) ? recognition.best() : Recognised{};
+  return is_sure_model(recognition.best()) ? recognition.best() : Recognised{};
 }
 
 }  // namespace st

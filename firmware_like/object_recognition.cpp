@@ -58,7 +58,9 @@ void ObjectTracker::recognition_step() {
   const bool at_hand = track.state == TrackState::kGood;
   if (!at_hand || !recognition_.advance(Recognition::kUnitsPerFrame)) return;
   const Recognised& answer = recognition_.best();
-  if (is_sure(answer) && adopt_model(track, answer))
+  // A heading that no look-up could tell is the thing's own nature in the end: it is round and plain.
+  const bool heading = is_sure_heading(answer) || track.look_ups == static_cast<int>(std::size(kLookUps));
+  if (is_sure_model(answer) && heading && adopt_model(track, answer))
     log(EventKind::kRecognised, track.id, static_cast<double>(answer.fit.score()), answer.agreeing);
   else
     log(EventKind::kUnknownObject, track.id, static_cast<double>(answer.fit.score()), answer.agreeing);

@@ -1,6 +1,7 @@
 #include "algo/recognition/descriptor.hpp"
 
 #include "algo/core/scalar_math.hpp"
+#include "algo/recognition/direction.hpp"
 
 namespace st {
 namespace {
@@ -51,12 +52,12 @@ struct SolidAngles {
 // Spreads one gradient over the cells and directions next to it.
 void add(std::span<float> histogram, const SolidAngles& solid, const Vec3f& cell, const Vec3f& g,
          float weight) {
-  const double across = std::sqrt(static_cast<double>(g.x * g.x + g.y * g.y));
-  const double azimuth = arc_tan2(static_cast<double>(g.y), static_cast<double>(g.x));
-  const double elevation = arc_tan2(static_cast<double>(g.z), across);
+  const float azimuth = coarse_arc_tan2(g.y, g.x);
+  const float elevation = coarse_arc_tan2(g.z, std::sqrt(g.x * g.x + g.y * g.y));
   // Bins' middles lie at azimuth 0, 45, ... and half a bin from the poles.
-  const Split a = split(static_cast<float>(azimuth * kAzimuthBins / (2 * kPi)) + kAzimuthBins);
-  const Split e = split(static_cast<float>((elevation + kPi / 2) * kElevationBins / kPi) - 0.5f);
+  constexpr float kPif = static_cast<float>(kPi);
+  const Split a = split(azimuth * (kAzimuthBins / (2 * kPif)) + kAzimuthBins);
+  const Split e = split((elevation + kPif / 2) * (kElevationBins / kPif) - 0.5f);
   const Split at[3] = {split(cell.x), split(cell.y), split(cell.z)};
   for (int i = 0; i < 8; ++i) {
     int c[3];

@@ -5,29 +5,48 @@
 #include "algo/tracking/recover.hpp"
 
 namespace st {
+namespace {
 
-ColorStats color_stats(const Volume& v) {
-  const float near = 0.5f * v.voxel_m / v.truncation_m * kTsdfScale;
-  double sum = 0, squares = 0, red = 0, green = 0;
-  ColorStats stats;
-  for (std::size_t i = 0; i < v.voxels(); ++i) {
-    if (v.tsdf[i] == kUnseen || color_trust_of(v.color[i]) == 0) continue;
-    if (std::fabs(static_cast<float>(v.tsdf[i])) > near) continue;
-    const double r = red_of(v.color[i]), g = green_of(v.color[i]), b = blue_of(v.color[i]);
-    const double grey = 0.299 * r + 0.587 * g + 0.114 * b;
-    sum += grey;
-    squares += grey * grey;
+struct ColorSums {
+  double grey = 0, squares = 0, red = 0, green = 0;
+  std::uint32_t n = 0;
+
+  void add(std::uint32_t c) {
+    const double r = red_of(c), g = green_of(c), b = blue_of(c);
+    const double level = 0.299 * r + 0.587 * g + 0.114 * b;
+    grey += level;
+    squares += level * level;
     red += r / (r + g + b + 1);
     green += g / (r + g + b + 1);
-    ++stats.voxels;
+    ++n;
   }
-  if (stats.voxels == 0) return stats;
-  const double n = stats.voxels, mean = sum / n, variance = squares / n - mean * mean;
-  stats.luminance = static_cast<float>(mean);
-  stats.luminance_sigma = static_cast<float>(std::sqrt(variance > 0 ? variance : 0));
-  stats.red_share = static_cast<float>(red / n);
-  stats.green_share = static_cast<float>(green / n);
-  return stats;
+  ColorStats stats() const {
+    if (n == 0) return {};
+    const double mean = grey / n, variance = squares / n - mean * mean;
+    return {static_cast<float>(mean), static_cast<float>(std::sqrt(variance > 0 ? variance : 0)),
+            static_cast<float>(red / n), static_cast<float>(green / n), n};
+  }
+};
+
+}  // namespace
+
+ColorStats color_stats(const Volume& v) {
+  ColorSums sums;
+  const float near = 0.5f * v.voxel_m / v.truncation_m * kTsdfScale;
+  const int b = v.bricks_a_side();
+  for (int bz = 0; bz < b; ++bz)
+    for (int by = 0; by < b; ++by)
+      for (int bx = 0; bx < b; ++bx) {
+        if ((v.bricks[v.brick_index(bx, by, bz)] & kBrickSolid) == 0) continue;
+        for (int row = 0; row < kBrickSide * kBrickSide; ++row) {
+          const std::size_t at = v.index(bx * kBrickSide, by * kBrickSide + row % kBrickSide,
+                                         bz * kBrickSide + row / kBrickSide);
+          for (std::size_t i = at; i < at + kBrickSide; ++i)
+            if (color_trust_of(v.color[i]) != 0 && std::fabs(static_cast<float>(v.tsdf[i])) <= near)
+              sums.add(v.color[i]);
+        }
+      }
+  return sums.stats();
 }
 
 Appearance appearance_of(const ModelTraits& traits) {

@@ -17,7 +17,7 @@ struct ColorStats {
   bool known() const { return voxels > 200; }
 };
 
-// Over the volume's voxels within half a voxel of the surface.
+// Over the volume's voxels within half a voxel of the surface, in bricks that are solid somewhere.
 ColorStats color_stats(const Volume& volume);
 
 // What a model is, apart from its volume and features.

@@ -1,12 +1,14 @@
 #include "algo/recognition/orientation.hpp"
 
 #include "algo/core/scalar_math.hpp"
+#include "algo/recognition/direction.hpp"
 
 namespace st {
 namespace {
 
 constexpr int kAzimuths = 16, kElevations = 8, kTilts = 36;
-constexpr float kWindowSigmas = 1.5f, kWindowRadius = 3.0f;  // of the window; of it in its sigmas
+constexpr float kPif = static_cast<float>(kPi);
+constexpr float kWindowSigmas = 1.5f, kWindowRadius = 2.0f;  // of the window; of it in its sigmas
 constexpr int kMostRadius = 16;                              // voxels
 constexpr float kPeakShare = 0.8f;
 constexpr float kNoGradient = 1e-6f;
@@ -56,11 +58,10 @@ struct Sphere {
   void add(const Vec3f& g, float w) {
     const float length = norm(g);
     if (length < kNoGradient) return;
-    const double across = std::sqrt(static_cast<double>(g.x * g.x + g.y * g.y));
-    const double azimuth = arc_tan2(static_cast<double>(g.y), static_cast<double>(g.x));
-    const double elevation = arc_tan2(static_cast<double>(g.z), across);
-    int a = static_cast<int>((azimuth + kPi) / (2 * kPi) * kAzimuths) % kAzimuths;
-    int e = static_cast<int>((elevation + kPi / 2) / kPi * kElevations);
+    const float azimuth = coarse_arc_tan2(g.y, g.x);
+    const float elevation = coarse_arc_tan2(g.z, std::sqrt(g.x * g.x + g.y * g.y));
+    int a = static_cast<int>((azimuth + kPif) / (2 * kPif) * kAzimuths) % kAzimuths;
+    int e = static_cast<int>((elevation + kPif / 2) / kPif * kElevations);
     if (e >= kElevations) e = kElevations - 1;
     if (a < 0) a = 0;
     weight[e][a] += w * length / angle[e];
@@ -149,8 +150,7 @@ int add_tilts(const Grid& level, const Vec3f& voxel, float sigma, const Vec3f& x
     const float a = dot(g, u), b = dot(g, v);
     const float length = std::sqrt(a * a + b * b);
     if (length < kNoGradient) return;
-    const double angle = arc_tan2(static_cast<double>(b), static_cast<double>(a));
-    const int bin = static_cast<int>((angle + kPi) / (2 * kPi) * kTilts) % kTilts;
+    const int bin = static_cast<int>((coarse_arc_tan2(b, a) + kPif) / (2 * kPif) * kTilts) % kTilts;
     weights[bin] += w * length;
     sums[bin] += (u * a + v * b) * w;
   });

@@ -10,6 +10,10 @@ constexpr int kTryIterations = 8, kRefineIterations = 20;
 constexpr int kRows = 8;                 // of a match that one slice does
 constexpr float kMatchTolerance = 2.5f;  // voxels of the appearance
 
+bool same_heading(const VolumeFit& a, const VolumeFit& b) {
+  return rotation_angle(a.T_model_seen.R * b.T_model_seen.R.transposed()) < kSameHeading_rad;
+}
+
 }  // namespace
 
 void Recognition::bind(Bump& memory, int volume_side) {
@@ -160,14 +164,17 @@ int Recognition::unpack_next() {
   return 40;
 }
 
+// Keeps the best, each of another heading.
 void Recognition::note(const VolumeFit& fit) {
-  VolumeFit fresh = fit;
-  for (VolumeFit& kept : kept_) {
-    if (!(fresh.score() > kept.score())) continue;
-    const VolumeFit pushed = kept;
-    kept = fresh;
-    fresh = pushed;
+  int worst = 0;
+  for (int i = 0; i < kKept; ++i) {
+    if (kept_[i].score() > 0 && same_heading(kept_[i], fit)) {
+      if (fit.score() > kept_[i].score()) kept_[i] = fit;
+      return;
+    }
+    if (kept_[i].score() < kept_[worst].score()) worst = i;
   }
+  if (fit.score() > kept_[worst].score()) kept_[worst] = fit;
 }
 
 // The first try is what the matches say.
@@ -187,30 +194,42 @@ int Recognition::try_heading() {
 }
 
 int Recognition::refine() {
-  const Candidate& candidate = verified();
-  if (kept_[heading_].score() > 0) {
-    const VolumeFit fit = fit_to_volume(volume_, seen_, kept_[heading_].T_model_seen, kRefineIterations);
-    const bool same_model = best_.model == candidate.model;
-    if (fit.score() > best_.fit.score()) {
-      const float second = same_model ? best_.second_score : best_.fit.score();
-      best_ = {candidate.model, fit, candidate.matches, candidate.fit.inliers, second};
-    } else if (!same_model && fit.score() > best_.second_score) {
-      best_.second_score = fit.score();
-    }
-  }
-  if (++heading_ == kKept) {
-    ++next_;
-    stage_ = Stage::kUnpack;
-  }
+  VolumeFit& kept = kept_[heading_];
+  if (kept.score() > 0) kept = fit_to_volume(volume_, seen_, kept.T_model_seen, kRefineIterations);
+  if (++heading_ < kKept) return 10;
+  conclude();
+  ++next_;
+  stage_ = Stage::kUnpack;
   return 10;
 }
 
-bool is_sure(const Recognised& r) {
+// What this model came to, beside the others.
+void Recognition::conclude() {
+  const Candidate& candidate = verified();
+  const VolumeFit* best = &kept_[0];
+  for (const VolumeFit& fit : kept_)
+    if (fit.score() > best->score()) best = &fit;
+  if (best->score() <= best_.fit.score()) {
+    if (best->score() > best_.second_score) best_.second_score = best->score();
+    return;
+  }
+  const float second = best_.fit.score();
+  best_ = {candidate.model, *best, candidate.matches, candidate.fit.inliers, second, 0};
+  for (const VolumeFit& fit : kept_)
+    if (!same_heading(fit, *best) && fit.score() > best_.other_heading) best_.other_heading = fit.score();
+}
+
+bool is_sure_model(const Recognised& r) {
   constexpr float kExplained = 0.88f, kLikeness = 0.35f, kAhead = 0.02f;
   constexpr int kColoured = 60;
   if (r.model < 0 || r.fit.explained < kExplained) return false;
   if (r.fit.colored >= kColoured && r.fit.likeness < kLikeness) return false;
   return r.fit.score() > r.second_score + kAhead;
+}
+
+bool is_sure_heading(const Recognised& r) {
+  constexpr float kAhead = 0.04f;
+  return r.fit.score() > r.other_heading + kAhead;
 }
 
 }  // namespace st

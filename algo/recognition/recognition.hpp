@@ -12,6 +12,7 @@
 namespace st {
 
 inline constexpr std::size_t kMaxKnownModels = 256;
+inline constexpr double kSameHeading_rad = 0.35;
 
 // Where a pose may come from: every heading is tried beside the matches; or the matches alone, as the paper
 // has it.
@@ -28,6 +29,7 @@ struct Recognised {
   VolumeFit fit;                  // T_model_seen and how well it fits
   int matches = 0, agreeing = 0;  // 3-D SIFT
   float second_score = 0;         // of the best other model
+  float other_heading = 0;        // of this model turned by more than kSameHeading_rad
 };
 
 class Recognition {
@@ -65,6 +67,7 @@ class Recognition {
   int unpack_next();
   int try_heading();
   int refine();
+  void conclude();
   void note(const VolumeFit& fit);
   const KnownModel& known(const Candidate& c) const { return models_[static_cast<std::size_t>(c.model)]; }
   Candidate& verified() { return candidates_[static_cast<std::size_t>(next_)]; }
@@ -90,7 +93,9 @@ class Recognition {
   Recognised best_;
 };
 
-// How sure an answer must be before it counts: a wrong one would spoil both models.
-bool is_sure(const Recognised& r);
+// How sure an answer must be before it counts: a wrong one would spoil both models. Which model it is may be
+// sure when its heading is not: a thing that is round and plain has none.
+bool is_sure_model(const Recognised& r);
+bool is_sure_heading(const Recognised& r);
 
 }  // namespace st
