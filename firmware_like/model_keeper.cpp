@@ -49,12 +49,12 @@ class Keeper {
       object.model_from_database = true;
       name(object, library_.entry(known));
       object.T_model_object = count.T_model_object;
-      if (track == nullptr || track->known_model != count.known_model) return;
+      if (!options_.may_store || track == nullptr || track->known_model != count.known_model) return;
       const int more = new_sides(track->sides, library_.models()[known].traits.sides);
       if (more >= kLeastNewSides) update(*track, known, more);
       return;
     }
-    if (track == nullptr || !is_worth_it(count, *track)) return;
+    if (!options_.may_store || track == nullptr || !is_worth_it(count, *track)) return;
     const ModelTraits traits = traits_of(*track);
     const Recognised same = find_double(library_.models(), track->volume);
     if (same.model >= 0) {  // known after all, from its sides that came into sight later

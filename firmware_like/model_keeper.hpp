@@ -18,6 +18,7 @@ using PictureOf = std::function<std::string(const MeshView&)>;
 struct KeepOptions {
   std::string source, program;  // provenance
   PictureOf picture;
+  bool may_store = true;  // false: names only
 };
 
 // Puts every tracked object's model into the database and the names and ids of all into `objects` (which are

@@ -46,7 +46,7 @@ void ObjectTracker::start_recognition() {
 
 // After the search, which needs the same time and is more urgent.
 void ObjectTracker::recognition_step() {
-  if (!knows_models() || search_.running) return;
+  if (!knows_models() || search_.running || config_.tracker == TrackerKind::kFrameToFrame) return;
   if (!recognition_.running()) start_recognition();
   if (!recognition_.running()) return;
   Track& track = tracks_[recognised_track_];

@@ -50,7 +50,8 @@ ObjectSample ObjectTracker::sample_of(Track& track) const {
   if (tracked && track.state == TrackState::kGood) {
     s.state = TrackState::kGood;
     track.published_gap = 0;
-  } else if (tracked && track.published_gap < kLongestGap && track.poor_run <= kLongestGap) {
+  } else if (tracked && !tracks_by_matches() && track.published_gap < kLongestGap &&
+             track.poor_run <= kLongestGap) {
     s.state = TrackState::kPredicted;
     ++track.published_gap;
   } else {

@@ -31,6 +31,12 @@ struct ObjectCount {
   int known_model = -1;  // of the database
   Pose T_model_object{};
 };
+// Recognition tracker: frames with a segment, and at which stage those without a pose failed.
+struct MatchCounts {
+  std::uint64_t frames = 0, found = 0;
+  std::uint64_t no_keypoints = 0, no_matches = 0, no_agreement = 0, not_verified = 0;
+};
+
 using ObjectCounts = FixedVector<ObjectCount, 64>;
 
 class ObjectTracker {
@@ -65,6 +71,7 @@ class ObjectTracker {
   // For the end of a run.
   std::span<const Track> tracks() const { return tracks_; }
   const ObjectCounts& counts() const { return counts_; }
+  const MatchCounts& match_counts() const { return match_counts_; }
   bool has_floor_frame() const { return has_floor_frame_; }
   const Pose& T_floor_camera() const { return T_floor_camera_; }
   bool floor_found() const { return support_.found; }
@@ -83,6 +90,7 @@ class ObjectTracker {
   void bind_points(Bump& memory);
   void bind_integration(Bump& memory);
   void bind_recognition(Bump& memory);
+  void bind_seen_features(Bump& memory);
 
   void update_support();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
@@ -103,6 +111,11 @@ class ObjectTracker {
   void note_integrated(Track& track, const IntegrateStats& stats);
   void fuse_at_rest(Track& track, const Rect& box);
 
+  bool tracks_by_matches() const;
+  void align_by_matches(Track& track, std::size_t k);
+  bool match_database(Track& track);
+  bool match_frame_before(Track& track, std::size_t k);
+  void judge_matches(Track& track);
   bool knows_models() const;
   bool wants_look_up(const Track& track) const;
   void start_recognition();
@@ -143,7 +156,7 @@ class ObjectTracker {
   ObjectCount* count_of(int id);  // null: more objects than the list holds
   void freeze_background();
 
-  Part parts_[7];
+  Part parts_[8];
   Calibration calibration_;
   LoopConfig config_;
   Frame frame_;
@@ -171,6 +184,13 @@ class ObjectTracker {
   Recognition recognition_;
   std::size_t recognised_track_ = 0;
   int recognised_id_ = 0;
+  static constexpr int kLeastMatches = 3;
+  struct SeenFeatures {  // of the frame before
+    std::span<Feature> features;
+    std::span<Descriptor> descriptors;
+    std::size_t used = 0;
+  } seen_features_[kMaxObjects];
+  MatchCounts match_counts_;
   UnexplainedList unexplained_;
   Search search_;
   struct Newcomer {  // an unexplained segment that was there in the frame before, too

@@ -95,6 +95,9 @@ SessionResult run_session(const SessionOptions& options) {
 
   std::optional<ModelStore> store;
   ModelLibrary library;
+  if (options.loop.tracker == TrackerKind::kRecognition && options.models_file.empty())
+    throw Failure(ExitCode::kBadInput,
+                  "--tracker recognition: needs --models DB, the objects that it shall recognise");
   if (!options.models_file.empty())
     library.read(store.emplace(options.models_file), options.loop.volume_side);
   ObjectTracker tracker(info.calibration, options.loop);
@@ -140,11 +143,13 @@ SessionResult run_session(const SessionOptions& options) {
   end.has_floor_frame = tracker.has_floor_frame();
   end.T_floor_camera = tracker.T_floor_camera();
   end.planned_bytes = plan.bytes();
+  if (tracks_by_matches(options.loop.tracker)) end.matching = matching_of(tracker.match_counts());
   end.deadline_misses = budget.counts().deadline_misses;
   ModelMeshes meshes;
   end.objects = object_ends(tracker, meshes);
   if (store) {
-    const KeepOptions keep{info.name, STARTRACK_VERSION, options.picture};
+    const KeepOptions keep{info.name, STARTRACK_VERSION, options.picture,
+                           !tracks_by_matches(options.loop.tracker)};
     for (const std::string& line : keep_models(tracker, library, *store, keep, end.objects))
       std::fprintf(stderr, "startrack: %s\n", line.c_str());
   }

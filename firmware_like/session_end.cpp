@@ -49,6 +49,10 @@ std::vector<ObjectEnd> object_ends(const ObjectTracker& tracker, ModelMeshes& me
   return objects;
 }
 
+MatchingEnd matching_of(const MatchCounts& c) {
+  return {c.frames, c.found, c.no_keypoints, c.no_matches, c.no_agreement, c.not_verified};
+}
+
 int longest_tracked(const std::vector<ObjectEnd>& objects) {
   std::uint64_t longest = 0;
   int id = 0;

@@ -20,6 +20,8 @@ ExitCode exit_code_of(const RunEnd& end);
 // second Ctrl-C asked for none.
 std::vector<ObjectEnd> object_ends(const ObjectTracker& tracker, ModelMeshes& meshes);
 
+MatchingEnd matching_of(const MatchCounts& counts);
+
 // The robot of an open loop is the object that went with it: the one that was tracked for longest. 0: none.
 int longest_tracked(const std::vector<ObjectEnd>& objects);
 

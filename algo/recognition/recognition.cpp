@@ -31,6 +31,7 @@ void Recognition::start(std::span<const KnownModel> models, const bool (&skip)[k
   subject_ = subject;
   way_ = way;
   best_ = {};
+  most_matches_ = 0;
   candidates_.clear();
   for (std::size_t i = 0; i < models.size() && i < kMaxKnownModels; ++i)
     if (!skip[i]) candidates_.push_back({static_cast<int>(i), 0, {}});
@@ -81,13 +82,38 @@ int Recognition::step() {
   }
 }
 
-int Recognition::sample_subject() {
-  seen_ = seen_memory_.first(sample_surface(*subject_.volume, seen_memory_, scratch_));
+// Samples the volume's surface, and places the appearance about it.
+void Recognition::look_at(const Volume& volume) {
+  seen_ = seen_memory_.first(sample_surface(volume, seen_memory_, scratch_));
   traits_ = {};
-  traits_.color = color_stats(*subject_.volume);
+  traits_.color = color_stats(volume);
   traits_.bounds = surface_bounds(seen_);
-  gate();
   place_appearance(sift_.input(), traits_.bounds);
+}
+
+FeatureSet Recognition::describe(const Volume& volume) {
+  look_at(volume);
+  if (seen_.empty()) return {};
+  fill_appearance(volume, appearance_of(traits_), sift_.input(), 0, kAppearanceSide);
+  sift_.start(kObjectKeypoints);
+  while (!sift_.step()) {
+  }
+  return sift_.features();
+}
+
+UprightFit Recognition::match(const FeatureSet& a, const FeatureSet& b, float tolerance_voxels,
+                              int& matches) {
+  matcher_.start(a, b);
+  while (!matcher_.step()) {
+  }
+  matcher_.finish(kMatchRatio, matches_);
+  matches = static_cast<int>(matches_.size());
+  return fit_upright(a, b, matches_, tolerance_voxels * sift_.input().voxel_m);
+}
+
+int Recognition::sample_subject() {
+  look_at(*subject_.volume);
+  gate();
   next_ = 0;
   stage_ = candidates_.empty() || seen_.size() < 50 ? Stage::kAnswer : Stage::kAppearance;
   return 20;
@@ -114,6 +140,7 @@ int Recognition::match_next() {
     if (!matcher_.step()) continue;
     matcher_.finish(kMatchRatio, matches_);
     candidate.matches = static_cast<int>(matches_.size());
+    if (candidate.matches > most_matches_) most_matches_ = candidate.matches;
     candidate.fit =
         fit_upright(sift_.features(), model.features, matches_, kMatchTolerance * sift_.input().voxel_m);
     matching_ = false;
@@ -214,7 +241,7 @@ void Recognition::conclude() {
     return;
   }
   const float second = best_.fit.score();
-  best_ = {candidate.model, *best, candidate.matches, candidate.fit.inliers, second, 0};
+  best_ = {candidate.model, *best, candidate.fit.T_b_a, candidate.matches, candidate.fit.inliers, second, 0};
   for (const VolumeFit& fit : kept_)
     if (!same_heading(fit, *best) && fit.score() > best_.other_heading) best_.other_heading = fit.score();
 }
@@ -228,8 +255,11 @@ bool is_sure_model(const Recognised& r) {
 }
 
 bool is_sure_heading(const Recognised& r) {
-  constexpr float kAhead = 0.04f;
-  return r.fit.score() > r.other_heading + kAhead;
+  constexpr float kAhead = 0.03f;
+  constexpr int kAgreeing = 5;
+  if (r.fit.score() > r.other_heading + kAhead) return true;
+  const Mat3 off = r.fit.T_model_seen.R * r.T_model_seen_matched.R.transposed();
+  return r.agreeing >= kAgreeing && rotation_angle(off) < kSameHeading_rad;
 }
 
 }  // namespace st

@@ -27,6 +27,7 @@ struct RecognitionSubject {
 struct Recognised {
   int model = -1;                 // -1: unknown
   VolumeFit fit;                  // T_model_seen and how well it fits
+  Pose T_model_seen_matched;      // as the matches alone have it; where `agreeing` is not 0
   int matches = 0, agreeing = 0;  // 3-D SIFT
   float second_score = 0;         // of the best other model
   float other_heading = 0;        // of this model turned by more than kSameHeading_rad
@@ -49,7 +50,14 @@ class Recognition {
 
   const Recognised& best() const { return best_; }
   Volume& volume() { return volume_; }
-  const Sift3d& sift() const { return sift_; }
+  // Of the subject, and matches with the model that had most.
+  int features() const { return static_cast<int>(sift_.features().features.size()); }
+  int most_matches() const { return most_matches_; }
+
+  // At once: the features of one volume, valid until the next use; and the motion that most matches of two
+  // sets agree on, to within so many voxels of the appearance.
+  FeatureSet describe(const Volume& volume);
+  UprightFit match(const FeatureSet& a, const FeatureSet& b, float tolerance_voxels, int& matches);
 
  private:
   enum class Stage { kIdle, kSample, kAppearance, kFeatures, kMatch, kUnpack, kHeadings, kRefine, kAnswer };
@@ -61,6 +69,7 @@ class Recognition {
 
   int step();  // one slice; its cost in units
   int sample_subject();
+  void look_at(const Volume& volume);
   void gate();
   int match_next();
   void rank();
@@ -85,6 +94,7 @@ class Recognition {
   std::span<Vec3f> scratch_;
   std::span<const SurfacePoint> seen_, model_points_;
   FixedVector<Candidate, kMaxKnownModels> candidates_;
+  int most_matches_ = 0;
   int next_ = 0;  // candidate, slab or heading that is next in this stage
   int heading_ = 0;
   bool matching_ = false;

@@ -48,8 +48,8 @@ void MotionFilter::set_turn_rate(double rate_rps) {
 
 void MotionFilter::rebase(const Pose& T_old_new) {
   const Vec3 arm = R_reference_camera_ * (pose_.R * T_old_new.t);
-  const Vec3 v = velocity_mps() + cross(angular_velocity_rps(), arm);
-  for (int i = 0; i < 3; ++i) axis_[i].rate = v[i];
+  const Vec3 more = cross(angular_velocity_rps(), arm);
+  for (int i = 0; i < 3; ++i) axis_[i].rate += more[i], before_[i].rate += more[i];
   output_.velocity_mps += cross(output_.angular_velocity_rps, arm);
   pose_ = pose_ * T_old_new;
   corrected_ = corrected_ * T_old_new;

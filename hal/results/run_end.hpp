@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct ObjectEnd {
   MeshView mesh;  // object frame; empty when the mesh was skipped
 };
 
+// Trackers that take their poses from 3-D SIFT matches: frames with a segment, and at which stage those
+// without a pose failed.
+struct MatchingEnd {
+  std::uint64_t frames = 0, found = 0, no_keypoints = 0, no_matches = 0, no_agreement = 0, not_verified = 0;
+};
+
 struct RunInfo {  // known at the start
   std::string version, source, mode, tracker, simd;
   std::string path_file;  // empty: no path
@@ -44,6 +51,7 @@ struct RunEnd {
   bool has_floor_frame = false;
   Pose T_floor_camera{};
   std::vector<ObjectEnd> objects;
+  std::optional<MatchingEnd> matching;
   int steering_object = 0;  // the object that was picked as the robot that obeys; 0: none was
   std::uint64_t planned_bytes = 0, peak_rss_bytes = 0, heap_calls_after_seal = 0, page_faults_after_seal = 0;
   std::uint64_t deadline_misses = 0;

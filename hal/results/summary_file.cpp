@@ -107,25 +107,34 @@ std::string format_summary(const RunEnd& end, const RunAnalysis& analysis, const
     lost += object.lost;
     objects.push_back(object_json(object, analysis_of(analysis, object.id)));
   }
-  const Json json = {{"version", end.info.version},
-                     {"source", end.info.source},
-                     {"mode", end.info.mode},
-                     {"simd", end.info.simd},
-                     {"frames", end.frames},
-                     {"tracked", tracked},
-                     {"lost", lost},
-                     {"ended", name_of(end.ending)},
-                     {"objects", objects},
-                     {"T_floor_camera", end.has_floor_frame ? matrix(end.T_floor_camera) : Json()},
-                     {"path", analysis.has_path ? path_json(analysis.path) : Json()},
-                     {"timing", timing_json(timing)},
-                     {"memory",
-                      {{"planned_bytes", end.planned_bytes},
-                       {"peak_rss_bytes", end.peak_rss_bytes},
-                       {"heap_calls_after_seal", end.heap_calls_after_seal},
-                       {"page_faults_after_seal", end.page_faults_after_seal}}},
-                     {"deadline_misses", end.deadline_misses},
-                     {"deterministic_hash", hash}};
+  Json json = {{"version", end.info.version},
+               {"source", end.info.source},
+               {"mode", end.info.mode},
+               {"simd", end.info.simd},
+               {"frames", end.frames},
+               {"tracked", tracked},
+               {"lost", lost},
+               {"ended", name_of(end.ending)},
+               {"objects", objects},
+               {"T_floor_camera", end.has_floor_frame ? matrix(end.T_floor_camera) : Json()},
+               {"path", analysis.has_path ? path_json(analysis.path) : Json()},
+               {"timing", timing_json(timing)},
+               {"memory",
+                {{"planned_bytes", end.planned_bytes},
+                 {"peak_rss_bytes", end.peak_rss_bytes},
+                 {"heap_calls_after_seal", end.heap_calls_after_seal},
+                 {"page_faults_after_seal", end.page_faults_after_seal}}},
+               {"deadline_misses", end.deadline_misses},
+               {"deterministic_hash", hash}};
+  if (end.matching) {
+    const MatchingEnd& m = *end.matching;
+    json["matching"] = {{"frames", m.frames},
+                        {"found", m.found},
+                        {"no_keypoints", m.no_keypoints},
+                        {"no_matches", m.no_matches},
+                        {"no_agreement", m.no_agreement},
+                        {"not_verified", m.not_verified}};
+  }
   // A source named in bytes that are no UTF-8 must not lose the run its summary.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

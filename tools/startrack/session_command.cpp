@@ -17,7 +17,8 @@ struct Term {
 constexpr Term kTerms[] = {{"edges", &LoopConfig::use_contour},
                            {"colour", &LoopConfig::use_color},
                            {"floor", &LoopConfig::use_floor},
-                           {"motion", &LoopConfig::use_motion}};
+                           {"motion", &LoopConfig::use_motion},
+                           {"cleaning", &LoopConfig::use_cleaning}};
 
 void leave_out(LoopConfig& config, const std::string& name) {
   for (const Term& term : kTerms) {
@@ -26,7 +27,7 @@ void leave_out(LoopConfig& config, const std::string& name) {
     return;
   }
   throw Failure(ExitCode::kBadInput,
-                "--without " + name + ": no such term; there are edges, colour, floor, motion");
+                "--without " + name + ": no such term; there are edges, colour, floor, motion, cleaning");
 }
 
 }  // namespace
@@ -44,16 +45,23 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
               options.loop.tracker = TrackerKind::kFrameToFrame;
             } else if (name == "listing1") {
               options.loop.tracker = TrackerKind::kListing1;
+            } else if (name == "recognition") {
+              options.loop.tracker = TrackerKind::kRecognition;
+            } else if (name == "sift") {
+              options.loop.tracker = TrackerKind::kSiftMotion;
             } else {
-              throw Failure(
-                  ExitCode::kBadInput,
-                  "--tracker " + name + ": no such tracker; there are star, listing1, frame-to-frame");
+              throw Failure(ExitCode::kBadInput,
+                            "--tracker " + name +
+                                ": no such tracker; there are star, listing1, frame-to-frame, "
+                                "recognition, sift");
             }
             options.tracker_name = name;
           },
           "star (frame to updated model, all terms), listing1 (the paper as printed: closest-point ICP "
           "against the "
-          "updated model, no other term) or frame-to-frame (its first approach)")
+          "updated model, no other term) frame-to-frame (its first approach), recognition (each frame alone "
+          "against --models, pose from 3-D "
+          "SIFT matches) or sift (matches with the frame before)")
       ->type_name("NAME");
   command
       .add_option(
@@ -68,8 +76,8 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
           },
           "leave pose terms out: edges (outline and free space), colour (the model's print), floor (height "
           "and "
-          "upright of what rests on it), motion (the predicted pose as a prior); all four leave projective "
-          "ICP alone")
+          "upright of what rests on it), motion (the predicted pose as a prior); these four leave projective "
+          "ICP alone; cleaning: pixels at steps in depth count, too")
       ->delimiter(',')
       ->type_name("TERM[,TERM]");
   command
