@@ -69,10 +69,17 @@ Box box_around(const Volume& v, const Vec3f (&corners)[3], float reach) {
   return box;
 }
 
+bool has_colors(const MeshView& mesh) {
+  for (const MeshVertex& vertex : mesh.vertices)
+    if (vertex.r != 0 || vertex.g != 0 || vertex.b != 0) return true;
+  return false;
+}
+
 }  // namespace
 
 void fill_from_mesh(const MeshView& mesh, Volume& v) {
-  // As long as it is being filled, `weight` is 0 in voxels that no triangle has reached.
+  const std::uint8_t color_state = has_colors(mesh) ? kSureColor : 0;
+  // As long as it is being filled, `weight` says how squarely a voxel faces its triangle; 0: none reached it.
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const MeshVertex* const corner[3] = {&mesh.vertices[mesh.indices[i]], &mesh.vertices[mesh.indices[i + 1]],
                                          &mesh.vertices[mesh.indices[i + 2]]};
@@ -89,22 +96,30 @@ void fill_from_mesh(const MeshView& mesh, Volume& v) {
           if (distance >= v.truncation_m) continue;
           Vec3f normal = corner[0]->normal * w.x + corner[1]->normal * w.y + corner[2]->normal * w.z;
           if (!(dot(normal, normal) > 0)) normal = flat;
-          const bool inside = dot(away, normal) < 0;
+          const float towards = dot(away, normal);
+          const bool inside = towards < 0;
           const std::size_t voxel = v.index(x, y, z);
           const float scaled = distance / v.truncation_m * kTsdfScale;
-          const auto magnitude = static_cast<std::int16_t>(scaled < 32766.0f ? scaled : 32766.0f);
-          const std::int16_t before = v.tsdf[voxel];
-          const bool nearer = v.weight[voxel] == 0 || magnitude < (before < 0 ? -before : before);
-          if (!nearer) continue;
-          v.tsdf[voxel] = inside ? static_cast<std::int16_t>(-magnitude) : magnitude;
-          v.weight[voxel] = kSeenOften;
+          const int magnitude = static_cast<int>(scaled < 32766.0f ? scaled : 32766.0f);
+          // Beside an edge both its triangles are as near; the one that the voxel faces knows its side.
+          const float length = distance * norm(normal);
+          const int facing = length > 0 ? static_cast<int>(254 * std::fabs(towards) / length) + 1 : 1;
+          const int before = v.tsdf[voxel] < 0 ? -v.tsdf[voxel] : v.tsdf[voxel];
+          constexpr int kAsNear = 2;
+          if (v.weight[voxel] != 0 && magnitude > before - kAsNear &&
+              (magnitude > before + kAsNear || facing <= v.weight[voxel]))
+            continue;
+          v.tsdf[voxel] = static_cast<std::int16_t>(inside ? -magnitude : magnitude);
+          v.weight[voxel] = static_cast<std::uint8_t>(facing > 255 ? 255 : facing);
           v.observations[voxel] = kObservations;
           v.color[voxel] = pack_rgb(blend(corner[0]->r, corner[1]->r, corner[2]->r, w),
                                     blend(corner[0]->g, corner[1]->g, corner[2]->g, w),
-                                    blend(corner[0]->b, corner[1]->b, corner[2]->b, w), kSureColor);
+                                    blend(corner[0]->b, corner[1]->b, corner[2]->b, w), color_state);
           mark(v, x, y, z, inside);
         }
   }
+  for (std::uint8_t& weight : v.weight.first(v.voxels()))
+    if (weight != 0) weight = kSeenOften;
 }
 
 }  // namespace st

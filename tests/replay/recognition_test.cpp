@@ -50,7 +50,7 @@ TEST(RecognitionRun, TheSecondRunKnowsWhatTheFirstMetAndTheDatabaseHoldsItOnce) 
     LONGS_EQUAL(2, lines_of(list(database)));  // heading and one model
     const Json T = object["T_model_object"];
     for (int i = 0; i < 3; ++i) DOUBLES_EQUAL(0, T[static_cast<std::size_t>(i)][3].get<double>(), 0.01);
-    DOUBLES_EQUAL(0, std::atan2(T[1][0].get<double>(), T[0][0].get<double>()), 0.06);
+    DOUBLES_EQUAL(0, std::atan2(T[1][0].get<double>(), T[0][0].get<double>()), 0.1);  // of small images
   }
 }
 
