@@ -159,7 +159,7 @@ void ObjectTracker::decide_lives(const LadderStep& step) {
   begin_released();
   if (!tracks_by_matches()) {
     search_step(step);
-    recognition_step();
+    recognition_step(step);
   }
   begin_tracks();
   confirm_proven();

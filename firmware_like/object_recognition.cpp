@@ -10,6 +10,7 @@ namespace {
 
 // Good poses after which a track is looked up: at once, and again when more of it has been seen.
 constexpr int kLookUps[] = {4, 45, 150};
+constexpr int kUnitsWhenLate = Recognition::kUnitsPerFrame / 4;  // on every step of the ladder but the first
 
 }  // namespace
 
@@ -45,7 +46,7 @@ void ObjectTracker::start_recognition() {
 }
 
 // After the search, which needs the same time and is more urgent.
-void ObjectTracker::recognition_step() {
+void ObjectTracker::recognition_step(const LadderStep& step) {
   if (!knows_models() || search_.running || config_.tracker == TrackerKind::kFrameToFrame) return;
   if (!recognition_.running()) start_recognition();
   if (!recognition_.running()) return;
@@ -56,7 +57,8 @@ void ObjectTracker::recognition_step() {
   }
   // The answer is checked against a frame in which the track itself is good.
   const bool at_hand = track.state == TrackState::kGood;
-  if (!at_hand || !recognition_.advance(Recognition::kUnitsPerFrame)) return;
+  if (!at_hand || !recognition_.advance(step.level == 0 ? Recognition::kUnitsPerFrame : kUnitsWhenLate))
+    return;
   const Recognised& answer = recognition_.best();
   // A heading that no look-up could tell is the thing's own nature in the end: it is round and plain.
   const bool heading = is_sure_heading(answer) || track.look_ups == static_cast<int>(std::size(kLookUps));

@@ -119,7 +119,7 @@ class ObjectTracker {
   bool knows_models() const;
   bool wants_look_up(const Track& track) const;
   void start_recognition();
-  void recognition_step();
+  void recognition_step(const LadderStep& step);
   bool adopt_model(Track& track, const Recognised& answer);
 
   void confirm(Track& track);

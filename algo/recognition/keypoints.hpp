@@ -31,6 +31,7 @@ struct KeypointLimits {
   // are: the extremum may slide there. Test: tr^3 / det < (2 r + 1)^3 / r^2 (Lowe 2004, section 4.1, for
   // three curvatures r, r, 1).
   float largest_curvature_ratio = 10;
+  int most_described = kMaxKeypoints;  // the strongest; the others get no descriptor
 };
 
 struct KeypointCounts {

@@ -32,6 +32,8 @@ struct ModelTraits {
 // rules find a few dozen where the strict ones find three.
 Appearance appearance_of(const ModelTraits& traits);
 inline constexpr KeypointLimits kObjectKeypoints{Neighbours::kNearest8, 0.02f, 0.002f, 50};
+// Of an object that is being looked up, in the loop's time.
+inline constexpr KeypointLimits kLookUpKeypoints{Neighbours::kNearest8, 0.02f, 0.002f, 50, 80};
 
 struct KnownModel {
   PackedVolume volume;

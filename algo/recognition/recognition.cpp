@@ -57,17 +57,17 @@ int Recognition::step() {
       fill_appearance(*subject_.volume, appearance_of(traits_), sift_.input(), next_, next_ + kSlabs);
       next_ += kSlabs;
       if (next_ < kAppearanceSide) return 4;
-      sift_.start(kObjectKeypoints);
+      sift_.start(kLookUpKeypoints);
       stage_ = Stage::kFeatures;
       return 4;
     case Stage::kFeatures: {
-      const bool describing = sift_.stage() == Sift3d::Stage::kDescribe;
+      const Sift3d::Stage doing = sift_.stage();
       if (sift_.step()) {
         stage_ = Stage::kMatch;
         next_ = 0;
         matching_ = false;
       }
-      return describing ? 10 : 5;
+      return doing == Sift3d::Stage::kBlur ? 2 : doing == Sift3d::Stage::kExtrema ? 7 : 6;
     }
     case Stage::kMatch:
       return match_next();
@@ -116,7 +116,7 @@ int Recognition::sample_subject() {
   gate();
   next_ = 0;
   stage_ = candidates_.empty() || seen_.size() < 50 ? Stage::kAnswer : Stage::kAppearance;
-  return 20;
+  return 10;
 }
 
 // Leaves those that the object may be.
@@ -176,19 +176,19 @@ int Recognition::unpack_next() {
     if (best_.model >= 0 && unpacked_ != best_.model)
       unpack(models_[static_cast<std::size_t>(best_.model)].volume, volume_);
     stage_ = Stage::kAnswer;
-    return 20;
+    return 5;
   }
   const Candidate& candidate = verified();
   unpacked_ = candidate.model;
   if (!unpack(known(candidate).volume, volume_)) {
     ++next_;
-    return 20;
+    return 5;
   }
   model_points_ = model_memory_.first(sample_surface(volume_, model_memory_, scratch_));
   for (VolumeFit& kept : kept_) kept = {};
   heading_ = 0;
   stage_ = Stage::kHeadings;
-  return 40;
+  return 10;
 }
 
 // Keeps the best, each of another heading.
@@ -217,17 +217,17 @@ int Recognition::try_heading() {
     heading_ = 0;
     stage_ = Stage::kRefine;
   }
-  return 5;
+  return 4;
 }
 
 int Recognition::refine() {
   VolumeFit& kept = kept_[heading_];
   if (kept.score() > 0) kept = fit_to_volume(volume_, seen_, kept.T_model_seen, kRefineIterations);
-  if (++heading_ < kKept) return 10;
+  if (++heading_ < kKept) return 8;
   conclude();
   ++next_;
   stage_ = Stage::kUnpack;
-  return 10;
+  return 8;
 }
 
 // What this model came to, beside the others.

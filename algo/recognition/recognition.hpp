@@ -65,7 +65,7 @@ class Recognition {
     int model = 0, matches = 0;
     UprightFit fit;
   };
-  static constexpr int kMostVerified = 4, kHeadings = 36, kKept = 3;
+  static constexpr int kMostVerified = 4, kHeadings = 24, kKept = 3;
 
   int step();  // one slice; its cost in units
   int sample_subject();

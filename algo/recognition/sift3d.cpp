@@ -28,10 +28,15 @@ int Sift3d::steps_left_at_most() const {
     case Stage::kExtrema:
       return searches - octave_ * kScalesPerOctave - level_ + 1 + kMaxKeypoints;
     case Stage::kDescribe:
-      return static_cast<int>(keypoints_.size() - next_keypoint_);
+      return static_cast<int>(keypoints_to_describe() - next_keypoint_);
     default:
       return 0;
   }
+}
+
+std::size_t Sift3d::keypoints_to_describe() const {
+  const auto most = static_cast<std::size_t>(limits_.most_described);
+  return keypoints_.size() < most ? keypoints_.size() : most;
 }
 
 // The strongest keypoints come first, so that those that find no room are the weakest.
@@ -77,7 +82,7 @@ bool Sift3d::step() {
       break;
     case Stage::kDescribe:
       if (used_ < features_.size()) describe_next();
-      if (next_keypoint_ == keypoints_.size() || used_ == features_.size()) stage_ = Stage::kDone;
+      if (next_keypoint_ == keypoints_to_describe() || used_ == features_.size()) stage_ = Stage::kDone;
       break;
     default:
       break;

@@ -49,6 +49,7 @@ class Sift3d {
 
  private:
   void describe_next();
+  std::size_t keypoints_to_describe() const;
 
   Grid input_;
   ScaleSpace space_;
