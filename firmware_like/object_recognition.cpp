@@ -60,8 +60,9 @@ void ObjectTracker::recognition_step(const LadderStep& step) {
   if (!at_hand || !recognition_.advance(step.level == 0 ? Recognition::kUnitsPerFrame : kUnitsWhenLate))
     return;
   const Recognised& answer = recognition_.best();
-  // A heading that no look-up could tell is the thing's own nature in the end: it is round and plain.
-  const bool heading = is_sure_heading(answer) || track.look_ups == static_cast<int>(std::size(kLookUps));
+  // Where the last look-up finds all headings alike, it is the thing's own nature: round and plain.
+  const bool last = track.look_ups == static_cast<int>(std::size(kLookUps));
+  const bool heading = is_sure_heading(answer) || (last && has_no_heading(answer));
   if (is_sure_model(answer) && heading && adopt_model(track, answer))
     log(EventKind::kRecognised, track.id, static_cast<double>(answer.fit.score()), answer.agreeing);
   else

@@ -255,11 +255,18 @@ bool is_sure_model(const Recognised& r) {
 }
 
 bool is_sure_heading(const Recognised& r) {
-  constexpr float kAhead = 0.03f;
+  // A print that hardly resembles the model's, of a mesh from elsewhere say, has to be far ahead.
+  constexpr float kAhead = 0.03f, kFarAhead = 0.06f, kAlike = 0.55f;
   constexpr int kAgreeing = 5;
-  if (r.fit.score() > r.other_heading + kAhead) return true;
+  const float ahead = r.fit.score() - r.other_heading;
+  if (ahead > kFarAhead || (ahead > kAhead && r.fit.likeness > kAlike)) return true;
   const Mat3 off = r.fit.T_model_seen.R * r.T_model_seen_matched.R.transposed();
   return r.agreeing >= kAgreeing && rotation_angle(off) < kSameHeading_rad;
+}
+
+bool has_no_heading(const Recognised& r) {
+  constexpr float kEqual = 0.01f;
+  return r.fit.score() - r.other_heading < kEqual;
 }
 
 }  // namespace st

@@ -107,5 +107,6 @@ class Recognition {
 // sure when its heading is not: a thing that is round and plain has none.
 bool is_sure_model(const Recognised& r);
 bool is_sure_heading(const Recognised& r);
+bool has_no_heading(const Recognised& r);
 
 }  // namespace st
