@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "algo/core/fixed_vector.hpp"
+#include "algo/core/polygon.hpp"
 #include "algo/recognition/recognition.hpp"
 
 namespace st {
@@ -20,10 +22,14 @@ struct LoopConfig {
   int keyframe_every =
       0;  // frame-to-frame: 0 never, else a keyframe is kept for so many frames (calibration stage)
   int volume_side = 128;  // voxels a side of each object's volume
-  bool use_contour = true, use_color = true, use_floor = true, use_motion = true;
+  // No track starts outside; empty: anywhere. On the floor, from the point below the camera: x along its axis
+  // laid on the floor, y to the left.
+  FixedVector<PlanePoint, 16> arena;
+  bool use_contour = true, use_color = true, use_floor = true, use_motion = true, use_wheels = true;
   bool use_cleaning = true;  // pixels at steps in depth say nothing of a shape
   RecognitionWay recognition = RecognitionWay::kMatchesAndHeadings;
-  double seconds = 0;  // stop after so much recorded (or live) time; 0: at the end
+  double camera_lag_s = 0;  // the camera's delay beyond that of the wheels' reports (calibrated)
+  double seconds = 0;       // stop after so much recorded (or live) time; 0: at the end
 };
 
 }  // namespace st

@@ -16,7 +16,7 @@ void finish_run(ResultWriter& writer, const RunEnd& end, std::span<const PathSam
       const std::string name = writer.folder() + "/object-" + std::to_string(object.id) + ".csv";
       tracks.push_back({object.id, parse_object_csv(read_whole_file(name), name), object.mesh.vertices});
     }
-    analysis = to_analysis(study_run(tracks, path, end.steering_object));
+    analysis = to_analysis(study_run(tracks, path, {end.steering_object, end.path_begins_t_s}));
   }
   writer.write_end(end, analysis);
 }

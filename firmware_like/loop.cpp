@@ -8,13 +8,18 @@ namespace {
 constexpr int kWait_ms = 100;     // how often a waiting loop looks for a signal
 constexpr int kSilentWaits = 50;  // five seconds without a frame from a live source: it is gone
 
+double wheel_base_m(const LoopParts& parts) {
+  return parts.driver != nullptr ? parts.driver->wheel_base_m() : parts.source.info().wheel_base_m;
+}
+
 }  // namespace
 
 Loop::Loop(const LoopParts& parts, const LoopConfig& config)
     : parts_(parts),
       config_(config),
       stages_(parts.clock),
-      degradation_(parts.source.info().frame_period_s) {}
+      degradation_(parts.source.info().frame_period_s),
+      wheels_(wheel_base_m(parts), config.camera_lag_s) {}
 
 // STAR, Listing 1: segment, align with the model, judge, fuse into the model; for every object, every frame.
 LoopEnd Loop::run() {
@@ -48,16 +53,31 @@ LoopEnd Loop::run() {
 
 double Loop::now_s() const { return static_cast<double>(parts_.clock.monotonic_ns()) * 1e-9; }
 
+DriverView Loop::driver_view() const {
+  DriverView view;
+  view.sight.watched = true;
+  for (const Track& track : parts_.tracker.tracks())
+    view.sight.sees = view.sight.sees || (track.active() && track.state == TrackState::kGood);
+  if (input_.complete_ns != 0)
+    view.sight.age_s = static_cast<double>(parts_.clock.monotonic_ns() - input_.complete_ns) * 1e-9;
+  view.wheels = input_.wheels;
+  parts_.tracker.see(view.objects);
+  view.trail = &wheels_;
+  view.t_s = input_.t_s;
+  view.host_now_s = input_.t_s + view.sight.age_s;
+  return view;
+}
+
 void Loop::drive() {
   if (parts_.driver == nullptr) return;
-  Sight sight{true, false, 0};
-  for (const Track& track : parts_.tracker.tracks())
-    sight.sees = sight.sees || (track.active() && track.state == TrackState::kGood);
-  if (input_.complete_ns != 0)
-    sight.age_s = static_cast<double>(parts_.clock.monotonic_ns() - input_.complete_ns) * 1e-9;
   const RobotFault before = parts_.driver->held_by();
-  parts_.driver->decide(now_s(), sight);
+  const bool knew_robot = parts_.driver->picked().id != 0;
+  parts_.driver->decide(now_s(), driver_view());
   parts_.driver->send();
+  const Obedience& picked = parts_.driver->picked();
+  if (!knew_robot && picked.id != 0)
+    report_.events.push_back({report_.t_s, EventKind::kSteeringObject, picked.id, picked.misfit_m,
+                              picked.lag_s, picked.base.gain});
   const RobotFault now = parts_.driver->held_by();
   if (now == before || now == RobotFault::kNone) return;
   report_.events.push_back({report_.t_s, EventKind::kRobotFault, 0, static_cast<double>(now), 0, 0});
@@ -86,6 +106,8 @@ bool Loop::acquire() {
     }
     break;
   }
+  if (parts_.driver != nullptr) parts_.driver->listen(input_.odometry);
+  if (wheel_base_m(parts_) > 0) wheels_.take(input_);
   if (frames_ == 0) first_t_s_ = input_.t_s;
   if (config_.seconds > 0 && input_.t_s - first_t_s_ > config_.seconds) return stop(LoopEnd::kTimeUp);
   report_ = FrameReport{};
@@ -117,6 +139,10 @@ void Loop::publish() {
   parts_.budget.count(report_);
   if (parts_.source.info().live) degradation_.next(report_.cpu_us);
   parts_.telemetry.offer(report_);
+  if (parts_.server == nullptr) return;
+  served_.report = report_;
+  if (parts_.driver != nullptr) served_.robot = parts_.driver->served();
+  parts_.server->offer(served_);
 }
 
 }  // namespace st

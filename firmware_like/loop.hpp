@@ -2,20 +2,22 @@
 // stands in algo or behind a seam of hal; everything it touches was bound and populated before run().
 #pragma once
 
+#include "algo/control/wheel_trail.hpp"
 #include "firmware_like/budget.hpp"
 #include "firmware_like/config.hpp"
 #include "firmware_like/degradation.hpp"
 #include "firmware_like/object_tracker.hpp"
-#include "firmware_like/path_driver.hpp"
+#include "firmware_like/robot_driver.hpp"
 #include "firmware_like/stage_clock.hpp"
 #include "hal/clock.hpp"
 #include "hal/results/result_writer.hpp"
 #include "hal/results/telemetry.hpp"
+#include "hal/serve/pose_server.hpp"
 #include "hal/source/frame_source.hpp"
 
 namespace st {
 
-// What the loop works with; all outlive it. Without a robot `driver` is null.
+// What the loop works with; all outlive it. Without a robot `driver` is null, without clients `server`.
 struct LoopParts {
   FrameSource& source;
   ObjectTracker& tracker;
@@ -23,7 +25,8 @@ struct LoopParts {
   BudgetMonitor& budget;
   const Clock& clock;
   const ResultWriter& results;  // a disk that is full ends the run
-  PathDriver* driver;
+  RobotDriver* driver;
+  PoseServer* server;
 };
 
 // Why run() came back.
@@ -45,6 +48,7 @@ class Loop {
   bool stop(LoopEnd why);
   double now_s() const;
   void drive();
+  DriverView driver_view() const;
   void publish();
 
   LoopParts parts_;
@@ -52,8 +56,10 @@ class Loop {
   StageClock stages_;
   Degradation degradation_;
   FrameInput input_;
+  WheelTrail wheels_;
   FrameReport report_;
   LoopEnd end_ = LoopEnd::kSourceEnded;
+  ServedFrame served_;
   int level_ = 0;
   std::uint64_t frames_ = 0, skipped_ = 0;
   double first_t_s_ = 0;

@@ -51,10 +51,16 @@ void ObjectTracker::drop_fragments(const Rect& box) {
   }
 }
 
+bool ObjectTracker::in_arena(const Vec3& p_camera) const {
+  if (config_.arena.empty()) return true;
+  const Vec3 p = support_.R_camera_floor.transposed() * p_camera;
+  return is_inside({config_.arena.begin(), config_.arena.size()}, p.x, p.y);
+}
+
 // Something that stood there from the first frame has just begun to move. What it looked like at rest,
 // averaged over the learning frames, is the best first frame there is, and no hand touched it yet.
 void ObjectTracker::begin_released() {
-  if (!segmentation_->has_released) return;
+  if (!segmentation_->has_released || !in_arena(to_double(segmentation_->released.centroid_m))) return;
   const ReleasedProto& released = segmentation_->released;
   const Rect box = released.box.clipped(rest_z_.width, rest_z_.height);
   fill_rest(box);
@@ -92,6 +98,7 @@ void ObjectTracker::begin_released() {
 // False: it has to wait for a slot, or is not worth one.
 bool ObjectTracker::begin_from_pixels(const Unexplained& what) {
   // Ragged things are hardly more than edges: nobody makes room for them.
+  if (!in_arena(to_double(what.centroid))) return false;
   const int solid =
       count_solid(frame_.depth_z, frame_.owners, kForeign, segmentation_->labels, what.label, what.box);
   if (solid < kLeastPoints) return false;

@@ -104,7 +104,6 @@ void ObjectTracker::judge_matches(Track& track) {
   track.poor_run = there ? 0 : track.poor_run + 1;
   if (!there) return;
   track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
-  for (int i = 0; i < 36; ++i) track.covariance[i] = track.aligned.covariance[i];
   track.has_moved = track.has_moved || norm(track.T_camera_object.t - track.T_birth.t) > 0.03;
   if (!track.matched) return;
   ++track.good_poses;

@@ -40,7 +40,37 @@ void move_origin(const double (&from)[36], const Vec3& arm, double (&to)[36]) {
     }
 }
 
+// What no single alignment knows of its error: the model was built from poses of the same tracker, and is off
+// by as much as they were. Chosen so that squared errors are as large as they claim to be (normalised
+// estimation error squared near one) over the simulated scenes; position grows with the sensor's noise.
+constexpr double kModelPosition_per_m = 0.00015, kModelTurn_rad = 0.007, kModelTilt_rad = 0.0005;
+
+void add_model_error(const Vec3& up, double distance_m, double (&covariance)[36]) {
+  const double position = kModelPosition_per_m * distance_m * distance_m;
+  constexpr double kTilt2 = kModelTilt_rad * kModelTilt_rad, kTurn2 = kModelTurn_rad * kModelTurn_rad;
+  for (int i = 0; i < 3; ++i) {
+    covariance[7 * i] += position * position;
+    covariance[7 * (3 + i)] += kTilt2;
+    for (int j = 0; j < 3; ++j) covariance[6 * (3 + i) + 3 + j] += (kTurn2 - kTilt2) * up[i] * up[j];
+  }
+}
+
 }  // namespace
+
+void ObjectTracker::see(SeenObjects& objects) const {
+  for (const Track& track : tracks_) {
+    if (track.id == 0 || !has_floor_frame_) continue;
+    const Pose T = T_floor_camera_ * track.T_camera_object;
+    const Vec3 middle = track.bounds.empty() ? Vec3{} : track.bounds.centre();
+    SeenObject object;
+    object.id = track.id;
+    object.good = track.phase == Track::Phase::kTracked && track.state == TrackState::kGood;
+    object.has_heading = track.yaw_source != YawSource::kNone;
+    object.pose = {T.t.x, T.t.y, to_roll_pitch_yaw(T.R).z};
+    object.guess = {middle.x, middle.y, 0.05};
+    objects.push_back(object);
+  }
+}
 
 ObjectSample ObjectTracker::sample_of(Track& track) const {
   ObjectSample s;
@@ -63,8 +93,12 @@ ObjectSample ObjectTracker::sample_of(Track& track) const {
   s.T_camera_object = track.T_camera_object * track.T_model_object;
   s.T_floor_object = T_floor_camera_ * s.T_camera_object;
   const Vec3 arm = s.T_camera_object.t - track.T_camera_object.t;
-  double covariance[36];
-  move_origin(track.covariance, arm, covariance);
+  double own[36], covariance[36];
+  track.motion.covariance(own);
+  if (s.state == TrackState::kGood)
+    for (int i = 0; i < 36; ++i) own[i] = track.aligned.covariance[i];
+  add_model_error(support_.up, track.T_camera_object.t.z, own);
+  move_origin(own, arm, covariance);
   int k = 0;
   for (int i = 0; i < 6; ++i)
     for (int j = i; j < 6; ++j) s.covariance[k++] = covariance[6 * i + j];

@@ -121,10 +121,13 @@ void ObjectTracker::update_support() {
 }
 
 void ObjectTracker::predict() {
-  for (Track& track : tracks_)
-    if (track.active())
-      track.motion.predict(frame_.input->device_t_s,
-                           track.drive.recognised() ? kDrivingNoise : MotionNoise{});
+  for (Track& track : tracks_) {
+    if (!track.active()) continue;
+    const MotionNoise noise = ask_wheels(track)          ? kWheeledNoise
+                              : track.drive.recognised() ? kDrivingNoise
+                                                         : MotionNoise{};
+    track.motion.predict(frame_.input->device_t_s, noise);
+  }
 }
 
 void ObjectTracker::render_one(Track& track, const Pose& T) {
@@ -197,6 +200,7 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
   }
   expect_heading(track, in);
   track.aligned = align(in, scratch_);
+  if (step.point_stride == 1) look_beside(track, in, k);
   defend_heading(track, in);
   if (in.floor.on && step.point_stride == 1) leave_floor(track, in);
 }
@@ -314,13 +318,14 @@ void ObjectTracker::judge_one(Track& track) {
     return;
   }
   if (!track.planar) return_to_floor(track);
+  track.yaw_source = yaw_source_of(track.aligned, support_.up);
+  judge_wheels(track);
   if (track.aligned.color.used > 0)
     track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance, track.aligned.color_rest,
                          frame_.color_lag_s);
   else
     track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
   track.T_camera_object = track.aligned.T_camera_object;
-  for (int i = 0; i < 36; ++i) track.covariance[i] = track.aligned.covariance[i];
   track.state = TrackState::kGood;
   track.poor_run = 0;
   ++track.good_poses;
@@ -328,13 +333,13 @@ void ObjectTracker::judge_one(Track& track) {
   track.T_last_good = track.T_camera_object;
   if (track.planar && support_.found)
     track.drive.add(frame_.input->device_t_s, support_.on_floor(track.T_camera_object), track.heading_doubt);
-  track.yaw_source = yaw_source_of(track.aligned, support_.up);
   track.has_moved = track.has_moved || moved_since_birth(track);
 }
 
 void ObjectTracker::judge_all() {
   for (Track& track : tracks_)
     if (track.active()) tracks_by_matches() ? judge_matches(track) : judge_one(track);
+  match_wheels();
 }
 
 void ObjectTracker::integrate_all(const LadderStep& step) {

@@ -2,6 +2,7 @@
 // one stage of the loop; they run in the order in which they stand here. All memory is bound once.
 #pragma once
 
+#include "algo/control/start_motion.hpp"
 #include "algo/core/bump.hpp"
 #include "algo/recognition/recognition.hpp"
 #include "algo/segmentation/segmenter.hpp"
@@ -11,6 +12,7 @@
 #include "algo/tracking/make_room.hpp"
 #include "algo/tracking/recover.hpp"
 #include "algo/tracking/track.hpp"
+#include "algo/tracking/way_match.hpp"
 #include "algo/volume/integrate.hpp"
 #include "firmware_like/config.hpp"
 #include "firmware_like/degradation.hpp"
@@ -66,6 +68,7 @@ class ObjectTracker {
   void judge_all();
   void integrate_all(const LadderStep& step);
   void decide_lives(const LadderStep& step);  // confirm, lose, find again, begin, evict
+  void see(SeenObjects& objects) const;       // the confirmed ones, for whoever steers by them
   void publish(FrameReport& report);
 
   // For the end of a run.
@@ -93,9 +96,13 @@ class ObjectTracker {
   void bind_seen_features(Bump& memory);
 
   void update_support();
+  bool ask_wheels(Track& track);
+  void judge_wheels(Track& track);
+  void match_wheels();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
   void judge_one(Track& track);
   void expect_heading(Track& track, AlignInput& in) const;
+  void look_beside(Track& track, const AlignInput& in, std::size_t k);
   void defend_heading(Track& track, const AlignInput& in);
   void leave_floor(Track& track, const AlignInput& held);
   void return_to_floor(Track& track);
@@ -141,6 +148,7 @@ class ObjectTracker {
   void refuse(const Rect& box, std::size_t k);
   void fill_rest(const Rect& box);
   void drop_fragments(const Rect& box);
+  bool in_arena(const Vec3& p_camera) const;
   void begin_released();
   bool is_looked_for_in(const Unexplained& what) const;
   void begin_tracks();
@@ -162,6 +170,8 @@ class ObjectTracker {
   Frame frame_;
   Segmenter segmenter_;
   const Segmentation* segmentation_ = nullptr;
+  WayMatch went_along_;  // with the wheels of the robot, if one is connected
+  int wheeled_id_ = 0;   // the object that does; 0: none
   ColorRegistration registration_;
   Support support_;
   bool support_frozen_ = false;

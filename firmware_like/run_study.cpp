@@ -53,13 +53,14 @@ ObjectStudy study_object(const ObjectTrack& track, bool steers, std::span<BaseWi
   return study;
 }
 
-PathStudy study_path(const ObjectStudy& object, const ObjectTrack& track, std::span<const PathSample> path) {
+PathStudy study_path(const ObjectStudy& object, const ObjectTrack& track, std::span<const PathSample> path,
+                     double begin_t_s) {
   PathStudy study;
   study.object = object.id;
   std::size_t i = 0;
   for (const ObjectRow& row : track.rows)
     if (row.has_pose) {
-      if (on_floor(row)) study.driven.push_back(object.driven[i]);
+      if (on_floor(row) && row.t_s >= begin_t_s) study.driven.push_back(object.driven[i]);
       ++i;
     }
   study.placed.resize(study.driven.size());
@@ -80,15 +81,15 @@ PathStudy study_path(const ObjectStudy& object, const ObjectTrack& track, std::s
 }  // namespace
 
 RunStudy study_run(std::span<const ObjectTrack> tracks, std::span<const PathSample> path,
-                   int steering_object) {
+                   const PathDriver& driver) {
   RunStudy study;
   std::vector<BaseWindow> windows(kBaseWindows);
   for (const ObjectTrack& track : tracks) {
-    const bool steers = track.id == steering_object;
+    const bool steers = track.id == driver.object;
     study.objects.push_back(study_object(track, steers, windows));
     const ObjectStudy& object = study.objects.back();
-    if (path.empty() || !object.has_base || (steering_object != 0 && !steers)) continue;
-    PathStudy candidate = study_path(object, track, path);
+    if (path.empty() || !object.has_base || (driver.object != 0 && !steers)) continue;
+    PathStudy candidate = study_path(object, track, path, driver.t_s);
     const bool better =
         study.path.object == 0 || candidate.comparison.shape.rmse_m < study.path.comparison.shape.rmse_m;
     if (candidate.comparison.valid && better) study.path = std::move(candidate);

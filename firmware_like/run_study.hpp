@@ -40,10 +40,15 @@ struct RunStudy {
   PathStudy path;
 };
 
-// `path` in the frame of its start, may be empty. The base that drove it is that of `steering_object`, or
-// when that is 0 the one that fits its shape best.
+// Who drove the path, as far as the run knows it.
+struct PathDriver {
+  int object = 0;   // 0: not known; the base that fits the path's shape best is taken
+  double t_s = -1;  // the path begins after that: what was driven before was the start motion
+};
+
+// `path` in the frame of its start, may be empty.
 RunStudy study_run(std::span<const ObjectTrack> tracks, std::span<const PathSample> path,
-                   int steering_object);
+                   const PathDriver& driver);
 
 // The part that goes to the result files.
 RunAnalysis to_analysis(const RunStudy& study);

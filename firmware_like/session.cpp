@@ -14,6 +14,7 @@
 #include "firmware_like/progress_line.hpp"
 #include "firmware_like/sealed_section.hpp"
 #include "firmware_like/session_end.hpp"
+#include "hal/create/sim_child.hpp"
 #include "hal/results/run_folder.hpp"
 #include "hal/system/arena.hpp"
 #include "hal/system/key_stop.hpp"
@@ -51,6 +52,11 @@ std::vector<PathSample> sampled(const Path& path) {
   return samples;
 }
 
+Steering steering_of(const SessionOptions& options) {
+  if (options.path_file.empty()) return Steering::kClient;
+  return options.closed_loop ? Steering::kClosedLoop : Steering::kOpenLoop;
+}
+
 // Runs the loop on a thread of its own: its name, priority and heap guard are the thread's.
 LoopEnd run_loop(Loop& loop, bool live, RunEnd& end) {
   LoopEnd why = LoopEnd::kSourceEnded;
@@ -79,7 +85,7 @@ SessionResult run_session(const SessionOptions& options) {
   // The robot first: its guard is a child process, and children are made before the arena is.
   std::unique_ptr<DriveBase> robot;
   if (!options.robot.port.empty()) robot = open_robot(options.robot);
-  if (robot && options.robot.port != "sim" && !arm_at_terminal()) {
+  if (robot && !is_simulated(options.robot.port) && !arm_at_terminal()) {
     robot->close();
     return {ExitCode::kInterrupted, {}, "not armed; nothing was driven"};
   }
@@ -120,16 +126,27 @@ SessionResult run_session(const SessionOptions& options) {
   if (isatty(STDERR_FILENO) != 0) sinks.push_back(&progress.emplace(info.expected_frames));
   Telemetry telemetry(ring, sinks);
   telemetry.start();
-  std::optional<PathDriver> driver;
-  if (robot && path) driver.emplace(*robot, *path, options.on_bump);
-  Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr},
+  std::optional<PoseServer> server;
+  if (!options.serve.empty()) server.emplace(options.serve, robot && !path);
+  std::optional<RobotDriver> driver;
+  if (robot)
+    driver.emplace(*robot, steering_of(options), path ? &*path : nullptr,
+                   server ? &server->commands() : nullptr, options.on_bump);
+  Loop loop({*source, tracker, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr,
+             server ? &*server : nullptr},
             options.loop);
   source->start();
+  if (server) {
+    std::printf("serve: port %d\n", server->port());
+    std::fflush(stdout);
+    server->start();
+  }
 
   RunEnd end;
   const LoopEnd why = run_loop(loop, info.live, end);
   if (robot) robot->close();
   source->stop();
+  if (server) server->stop();
   telemetry.stop();
   progress.reset();
 
@@ -153,7 +170,7 @@ SessionResult run_session(const SessionOptions& options) {
     for (const std::string& line : keep_models(tracker, library, *store, keep, end.objects))
       std::fprintf(stderr, "startrack: %s\n", line.c_str());
   }
-  if (driver) end.steering_object = longest_tracked(end.objects);
+  if (driver) name_steering_object(*driver, end);
   end.peak_rss_bytes = peak_rss_bytes();
   finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});
   result.code = exit_code_of(end);

@@ -17,6 +17,8 @@ struct SessionOptions {
   RobotOptions robot;  // port empty: no robot
   Reaction on_bump = Reaction::kEnd;
   std::string path_file;  // empty: no path
+  bool closed_loop = false;
+  std::string serve;  // [HOST:]PORT for clients; empty: none
   LoopConfig loop;
   std::string tracker_name = "star";
   std::string models_file;  // the model database; empty: none

@@ -53,12 +53,9 @@ MatchingEnd matching_of(const MatchCounts& c) {
   return {c.frames, c.found, c.no_keypoints, c.no_matches, c.no_agreement, c.not_verified};
 }
 
-int longest_tracked(const std::vector<ObjectEnd>& objects) {
-  std::uint64_t longest = 0;
-  int id = 0;
-  for (const ObjectEnd& object : objects)
-    if (object.tracked > longest) longest = object.tracked, id = object.id;
-  return id;
+void name_steering_object(const RobotDriver& driver, RunEnd& end) {
+  end.steering_object = driver.picked().id != 0 ? driver.picked().id : driver.went_along();
+  end.path_begins_t_s = driver.path_begins_t_s();
 }
 
 }  // namespace st

@@ -22,7 +22,7 @@ std::vector<ObjectEnd> object_ends(const ObjectTracker& tracker, ModelMeshes& me
 
 MatchingEnd matching_of(const MatchCounts& counts);
 
-// The robot of an open loop is the object that went with it: the one that was tracked for longest. 0: none.
-int longest_tracked(const std::vector<ObjectEnd>& objects);
+// Which object the robot was, and since when that was known.
+void name_steering_object(const RobotDriver& driver, RunEnd& end);
 
 }  // namespace st

@@ -24,6 +24,8 @@ const char* name_of(EventKind kind) {
       return "no_floor";
     case EventKind::kRobotFault:
       return "robot_fault";
+    case EventKind::kSteeringObject:
+      return "steering_object";
     case EventKind::kVolumeFull:
       return "volume_full";
     case EventKind::kInterrupted:

@@ -20,21 +20,30 @@ struct OdometrySample {
   double left_m = 0, right_m = 0;
 };
 
+// The base's motion between the exposures of two processed frames, as its wheels tell it.
+struct WheelOdometry {
+  bool valid = false;    // the wheels' reports cover all of it
+  double forward_m = 0;  // way of the turning centre, backwards negative
+  double turn_rad = 0;   // to the left positive
+  double dt_s = 0;       // between the exposures, by the camera's clock
+};
+
 // What a recording lost or damaged on the way to this frame.
 enum class EventKind : std::uint8_t {
-  kDamaged,      // a: frames skipped so far, b: reason (DamageReason)
-  kGap,          // a: seconds since the frame before, b: depth frames missing
-  kConfirmed,    // object given its number
-  kLost,         // a: seconds since its last good pose
-  kRecovered,    // a: seconds without a pose
-  kLeft,         // left through the edge of the view
-  kEvicted,      // its slot went to a newer mover
-  kNoObject,     // nothing ever moved
-  kNoFloor,      // floor frame taken from gravity or the camera
-  kRobotFault,   // a: RobotFault code
-  kVolumeFull,   // surface outside the object's volume was dropped
-  kInterrupted,  // a: signal
-  kRecognised,   // a model of the database took over; a: how well it fits, 0-1, b: agreeing 3-D SIFT matches
+  kDamaged,         // a: frames skipped so far, b: reason (DamageReason)
+  kGap,             // a: seconds since the frame before, b: depth frames missing
+  kConfirmed,       // object given its number
+  kLost,            // a: seconds since its last good pose
+  kRecovered,       // a: seconds without a pose
+  kLeft,            // left through the edge of the view
+  kEvicted,         // its slot went to a newer mover
+  kNoObject,        // nothing ever moved
+  kNoFloor,         // floor frame taken from gravity or the camera
+  kRobotFault,      // a: RobotFault code
+  kSteeringObject,  // obeyed the start motion; a: misfit in metres, b: camera's lag in seconds, c: gain
+  kVolumeFull,      // surface outside the object's volume was dropped
+  kInterrupted,     // a: signal
+  kRecognised,  // a model of the database took over; a: how well it fits, 0-1, b: agreeing 3-D SIFT matches
   kUnknownObject,  // none of the models is it; a, b: of the best
 };
 const char* name_of(EventKind kind);
@@ -62,7 +71,8 @@ struct FrameInput {
   std::int64_t complete_ns = 0;  // CLOCK_MONOTONIC when the frame was complete
   int skipped = 0;               // live: frames that this one replaced
   int recorded_level = 0;  // degradation level that the recording run used on this frame (frames.csv), else 0
-  FixedVector<OdometrySample, 64> odometry;
+  FixedVector<OdometrySample, 64> odometry;  // what the robot reported since the frame before
+  WheelOdometry wheels;                      // from that, by the loop: since the last processed frame
   FixedVector<Event, 16> events;
 };
 

@@ -69,6 +69,11 @@ bool Habit::broken_by_color(const AlignResult& result) const {
   return knows_color() && result.color.sigma > kHabitColorTimes * color_sigma_ + kHabitColorMore;
 }
 
+bool Habit::wondered_at_by_color(const AlignResult& result) const {
+  constexpr float kTimes = 1.4f, kMore = 0.5f;
+  return knows_color() && result.color.sigma > kTimes * color_sigma_ + kMore;
+}
+
 bool Habit::broken_by(const AlignResult& result, const Agreement& a) const {
   if (broken_by_color(result)) return true;
   return frames_ >= kHabitFrames && agreeing(a) < kHabitAgree * agree_ && !part_is_gone(a);

@@ -31,6 +31,8 @@ enum class Verdict { kGood, kPoor, kLost };
 class Habit {
  public:
   bool broken_by(const AlignResult& result, const Agreement& agreement) const;
+  // The colours fit clearly worse than usual, though perhaps not so badly that the pose is wrong.
+  bool wondered_at_by_color(const AlignResult& result) const;
   bool broken_by_color(const AlignResult& result) const;
   bool knows_color() const;
   // What a pose that was found by searching must reach: soft and ragged things never fit well.

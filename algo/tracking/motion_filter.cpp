@@ -46,6 +46,12 @@ void MotionFilter::set_turn_rate(double rate_rps) {
   output_.angular_velocity_rps.z = rate_rps;
 }
 
+void MotionFilter::turns_at(double rate_rps, double sigma_rps) {
+  axis_[5].rate = rate_rps;
+  axis_[5].pr = 0;
+  axis_[5].rr = sigma_rps * sigma_rps;
+}
+
 void MotionFilter::rebase(const Pose& T_old_new) {
   const Vec3 arm = R_reference_camera_ * (pose_.R * T_old_new.t);
   const Vec3 more = cross(angular_velocity_rps(), arm);
@@ -112,20 +118,27 @@ void MotionFilter::predict(double t_s, const MotionNoise& noise) {
   }
 }
 
+// The diagonal of the axes' values, or of their inverses, turned from the reference axes to the camera's.
+void MotionFilter::in_camera_axes(bool inverse, double (&out)[36]) const {
+  const Mat3& R = R_reference_camera_;
+  for (double& x : out) x = 0;
+  for (int block = 0; block < 6; block += 3)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < 3; ++k) {
+          const double pp = axis_[block + k].pp;
+          out[6 * (block + r) + block + c] += R(k, r) * R(k, c) * (inverse ? 1 / pp : pp);
+        }
+}
+
 MotionPrior MotionFilter::prior() const {
   MotionPrior prior;
   prior.mean = pose_;
-  // Rotate the diagonal information from the reference axes to the camera's.
-  const Mat3& R = R_reference_camera_;
-  for (int block = 0; block < 2; ++block)
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) {
-        double sum = 0;
-        for (int k = 0; k < 3; ++k) sum += R(k, r) * R(k, c) / axis_[3 * block + k].pp;
-        prior.information[6 * (3 * block + r) + 3 * block + c] = sum;
-      }
+  in_camera_axes(true, prior.information);
   return prior;
 }
+
+void MotionFilter::covariance(double (&out)[36]) const { in_camera_axes(false, out); }
 
 void MotionFilter::correct(const Pose& T_camera_object, const double (&covariance)[36]) {
   correct(T_camera_object, covariance, TieRest{}, 0);  // of the same time: nothing is left open

@@ -15,6 +15,8 @@ struct MotionNoise {
   double turn_acceleration_rps2 = 5.0;
 };
 inline constexpr MotionNoise kDrivingNoise{0.7, 5.0};
+// The same while the wheels tell the turn, which is then no matter of acceleration.
+inline constexpr MotionNoise kWheeledNoise{0.7, 0.3};
 
 // Smoothed rates for publishing, reference axes. First-order low-pass filters: velocity lags by 67 ms,
 // acceleration by 200 ms more at 30 frames a second.
@@ -37,6 +39,9 @@ class MotionFilter {
   void turn(const Mat3& by);
   // How fast it turns about the reference's z axis was wrong as well.
   void set_turn_rate(double rate_rps);
+
+  // How fast it turns about the reference's z axis until the next prediction's time, told by its wheels.
+  void turns_at(double rate_rps, double sigma_rps);
 
   // Another frame of the same body stands for it from now on: the rates are those of its origin.
   void rebase(const Pose& T_old_new);
@@ -70,6 +75,8 @@ class MotionFilter {
   // How the pose at t_s() + lag_s, the time of a colour image, hangs together with that at t_s().
   ColorTime color_time(double lag_s) const;
   double position_sigma_m() const;
+  // Of the pose as it stands, row-major 6x6: position, then turn, camera axes.
+  void covariance(double (&out)[36]) const;
 
  private:
   struct Axis {
@@ -91,6 +98,7 @@ class MotionFilter {
     double variance, with_value, with_rate;
   };
   Then then(int axis, double lag_s) const;
+  void in_camera_axes(bool inverse, double (&out)[36]) const;
   void update_output(const Pose& before, double dt_s);
   MotionOutput output_;
   Pose corrected_;  // newest corrected pose and its time, for the published rates

@@ -7,6 +7,7 @@
 #include "algo/tracking/judge.hpp"
 #include "algo/tracking/model_view.hpp"
 #include "algo/tracking/motion_filter.hpp"
+#include "algo/tracking/wheel_witness.hpp"
 #include "algo/volume/volume.hpp"
 
 namespace st {
@@ -69,6 +70,8 @@ struct Track {
   DriveModel drive;
   ExpectedHeading heading;     // in this frame, from its motion
   bool heading_doubt = false;  // what it looks like contradicts that
+  WheelWitness wheels;         // whether the robot's wheels may tell its turn
+  bool asked_wheels = false;   // and whether they did in this frame
   Pose T_camera_object;        // newest estimate, whatever its state
   Pose T_last_good;
   TrackState state = TrackState::kLost;
@@ -86,7 +89,6 @@ struct Track {
   int published_gap = 0;   // predicted rows in a row
   double last_good_t_s = 0;
   double yaw_unwrapped = 0;  // as published, floor frame
-  double covariance[36]{};   // of T_camera_object, newest good alignment; camera axes
 
   // Recognised: its pose and model are those of a stored model's frame, in which its own frame lies there.
   int known_model = -1;  // of the database; -1: new

@@ -6,8 +6,9 @@ namespace st {
 std::unique_ptr<DriveBase> open_robot(const RobotOptions& options) {
   auto log = std::make_unique<RobotLogWriter>(options.log_path);
   std::unique_ptr<SimChild> sim;
-  if (options.port == "sim")
-    sim = std::make_unique<SimChild>(options.model.value_or(RobotModel::kCreate2), options.seed);
+  if (is_simulated(options.port))
+    sim =
+        std::make_unique<SimChild>(options.port, options.model.value_or(RobotModel::kCreate2), options.seed);
   auto port = std::make_unique<RobotPort>(sim ? sim->port() : options.port);
   const RobotIdentity identity = meet_robot(*port, options.model, *log);
   RobotGeometry wheels = oi::default_geometry(identity.model);

@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include "hal/create/handshake.hpp"
+#include "hal/create/listener.hpp"
 #include "hal/create/robot_port.hpp"
 #include "hal/create/sim_child.hpp"
 #include "hal/error.hpp"
@@ -19,25 +19,10 @@ namespace {
 
 constexpr int kGuardEnd_ms = 1000;
 
-int listen_at(const std::string& address) {
-  const std::string where = address.find(':') == std::string::npos ? "127.0.0.1:" + address : address;
-  const PortAddress resolved = port_address("tcp:" + where, 0);
-  const int fd = socket(resolved.host.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const int yes = 1;
-  if (fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
-      bind(fd, reinterpret_cast<const sockaddr*>(&resolved.host), resolved.host_size) == 0 &&
-      listen(fd, 4) == 0)
-    return fd;
-  const int error = errno;
-  if (fd >= 0) close(fd);
-  throw Failure(ExitCode::kBadInput,
-                "--listen " + address + ": " + std::strerror(error) + "; name another address or port");
-}
-
 }  // namespace
 
 RemoteGuard::RemoteGuard(const RobotOptions& robot, const std::string& address)
-    : listener_(listen_at(address)) {
+    : listener_(listen_at("--listen", address)) {
   try {
     RobotLogWriter no_log{std::string()};
     RobotPort port(robot.port);
@@ -57,14 +42,7 @@ RemoteGuard::~RemoteGuard() {
   wait_for_child(guard_.pid, kGuardEnd_ms);
 }
 
-int RemoteGuard::port() const {
-  sockaddr_storage bound{};
-  socklen_t size = sizeof bound;
-  getsockname(listener_, reinterpret_cast<sockaddr*>(&bound), &size);
-  const bool six = bound.ss_family == AF_INET6;
-  return ntohs(six ? reinterpret_cast<const sockaddr_in6&>(bound).sin6_port
-                   : reinterpret_cast<const sockaddr_in&>(bound).sin_port);
-}
+int RemoteGuard::port() const { return bound_port(listener_); }
 
 bool RemoteGuard::serve() {
   for (;;) {

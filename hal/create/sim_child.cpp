@@ -8,9 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <vector>
 
 #include "hal/error.hpp"
 
@@ -22,6 +24,14 @@ constexpr int kEnd_ms = 2000;
 
 [[noreturn]] void cannot(const std::string& what) {
   throw Failure(ExitCode::kDeviceFault, "simulated robot: " + what);
+}
+
+// `sim:slip=0.02,mode-offset=1` -> --slip=0.02 --mode-offset=1
+void add_switches(const std::string& port, std::vector<std::string>& arguments) {
+  for (std::size_t at = port.find(':'); at != std::string::npos; at = port.find(',', at + 1)) {
+    const std::size_t end = std::min(port.find(',', at + 1), port.size());
+    if (end > at + 1) arguments.push_back("--" + port.substr(at + 1, end - at - 1));
+  }
 }
 
 // Only system calls: it runs between fork and exec.
@@ -54,28 +64,32 @@ bool wait_for_child(pid_t pid, int timeout_ms) {
   return reaped == pid || (reaped < 0 && errno == ECHILD);
 }
 
-SimChild::SimChild(RobotModel model, std::uint64_t seed) {
+bool is_simulated(const std::string& port) { return port == "sim" || port.starts_with("sim:"); }
+
+SimChild::SimChild(const std::string& port, RobotModel model, std::uint64_t seed) {
   const char* named = std::getenv("STARTRACK_BINARY");
   const std::string program = named != nullptr ? named : "/proc/self/exe";
   int life[2], out[2];
   state_ = memfd_create("create-sim-state", MFD_CLOEXEC);
   if (state_ < 0 || pipe2(life, O_CLOEXEC) != 0 || pipe2(out, O_CLOEXEC) != 0) cannot(std::strerror(errno));
   lifeline_ = life[1];
-  std::string arguments[] = {"startrack",
-                             "create-sim",
-                             "--quiet",
-                             "--model",
-                             model == RobotModel::kCreate1 ? "create1" : "create2",
-                             "--seed",
-                             std::to_string(seed),
-                             "--state",
-                             "/proc/self/fd/" + std::to_string(state_),
-                             "--lifeline",
-                             std::to_string(life[0])};
-  char* argv[std::size(arguments) + 1] = {};
-  for (std::size_t i = 0; i < std::size(arguments); ++i) argv[i] = arguments[i].data();
+  std::vector<std::string> arguments = {"startrack",
+                                        "create-sim",
+                                        "--quiet",
+                                        "--model",
+                                        model == RobotModel::kCreate1 ? "create1" : "create2",
+                                        "--seed",
+                                        std::to_string(seed),
+                                        "--state",
+                                        "/proc/self/fd/" + std::to_string(state_),
+                                        "--lifeline",
+                                        std::to_string(life[0])};
+  add_switches(port, arguments);
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
   pid_ = fork();
-  if (pid_ == 0) become_simulator(program.c_str(), argv, state_, life[0], out[1]);
+  if (pid_ == 0) become_simulator(program.c_str(), argv.data(), state_, life[0], out[1]);
   const int fork_error = errno;
   close(life[0]);
   close(out[1]);
@@ -86,7 +100,7 @@ SimChild::SimChild(RobotModel model, std::uint64_t seed) {
   close(state_);
   if (pid_ < 0) cannot(std::string("cannot start a process: ") + std::strerror(fork_error));
   wait_for_child(pid_, kEnd_ms);
-  cannot("`" + program + " create-sim` did not come up; run it by hand to see why");
+  cannot("`" + program + " create-sim` did not come up as `" + port + "`; run it by hand to see why");
 }
 
 void SimChild::read_port(int from) {

@@ -1,4 +1,5 @@
-// PORT `sim`: this program's own `create-sim` as a child process.
+// PORT `sim[:SWITCH=VALUE,...]`: this program's own `create-sim` as a child process, with those of its
+// switches.
 #pragma once
 
 #include <sys/types.h>
@@ -10,11 +11,14 @@
 
 namespace st {
 
+bool is_simulated(const std::string& port);
+
 class SimChild {
  public:
   // Starts it and waits for its pseudo-terminal. The program run is this one (/proc/self/exe), or what the
   // environment's STARTRACK_BINARY names. Throws Failure (kDeviceFault).
-  SimChild(RobotModel model, std::uint64_t seed);
+  // For a switch that create-sim does not know it throws kBadInput's line by create-sim's own words.
+  SimChild(const std::string& port, RobotModel model, std::uint64_t seed);
   ~SimChild();  // the simulated robot ends once nobody holds its lifeline
   SimChild(const SimChild&) = delete;
   SimChild& operator=(const SimChild&) = delete;

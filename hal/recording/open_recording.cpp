@@ -172,6 +172,7 @@ std::unique_ptr<FrameSource> open_recording(const SourceOptions& options, const 
   choose_calibration(options, kind, survey, info);
   require_usable(*make_reader(kind, info, {}), info, survey);
   std::unique_ptr<RecordingReader> reader = make_reader(kind, info, decoder);
+  info.wheel_base_m = reader->wheel_base_m();
   return std::make_unique<ReplaySource>(std::move(info), std::move(reader), options.real_pace);
 }
 

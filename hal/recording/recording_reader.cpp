@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hal/create/oi.hpp"
+
 namespace st {
 namespace {
 
@@ -24,6 +26,11 @@ void RecordingReader::open_robot_log(const OdometryDecoder& decoder) {
   if (!decoder || !robot_log_.open(path_of("robot.log")) || !robot_log_.model()) return;
   robot_bytes_ = decoder(*robot_log_.model(), robot_log_.geometry(),
                          [this](const OdometrySample& s) { odometry_.push_back(s); });
+}
+
+double RecordingReader::wheel_base_m() const {
+  if (!has_robot_log()) return 0;
+  return robot_log_.geometry().value_or(oi::default_geometry(*robot_log_.model())).wheel_base_m;
 }
 
 bool RecordingReader::read(FrameSlot& slot) {

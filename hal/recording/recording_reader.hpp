@@ -26,6 +26,9 @@ class RecordingReader {
   // the last event.
   void flush_events(FrameInput& last);
 
+  // Of the robot whose log stands beside the frames; 0: there is none.
+  double wheel_base_m() const;
+
   std::uint64_t usable() const { return usable_; }
   std::uint64_t damaged() const { return damaged_; }
   // "file: what" of the first damaged depth frame; empty when there is none.

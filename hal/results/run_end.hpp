@@ -53,6 +53,8 @@ struct RunEnd {
   std::vector<ObjectEnd> objects;
   std::optional<MatchingEnd> matching;
   int steering_object = 0;  // the object that was picked as the robot that obeys; 0: none was
+  double path_begins_t_s =
+      -1;  // what was driven before was the start motion; -1: the path began with the drive
   std::uint64_t planned_bytes = 0, peak_rss_bytes = 0, heap_calls_after_seal = 0, page_faults_after_seal = 0;
   std::uint64_t deadline_misses = 0;
 };

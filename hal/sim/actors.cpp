@@ -152,6 +152,35 @@ void add_walker(Scene& scene, const Stage& stage, Random& random) {
       random);
 }
 
+// Each to and fro along a line of its own, with a rest between, from within the first seconds on: four behind
+// the robot, two between it and the camera.
+void add_crowd(Scene& scene, const Stage& stage, Random& random) {
+  constexpr int kPeople = 6, kBehind = 4;
+  const double front = std::max(stage.near_m - 0.42, stage.camera_x_m + 0.8), reach = 2.6;
+  const Pose2 frame{stage.T_room_stage.t.x, stage.T_room_stage.t.y,
+                    to_roll_pitch_yaw(stage.T_room_stage.R).z};
+  for (int i = 0; i < kPeople; ++i) {
+    const bool behind = i < kBehind;
+    const double x = behind ? stage.far_m + 0.45 + 0.4 * i : front - 0.15 * (i - kBehind);
+    const double speed = random.uniform(0.7, 1.3), span = 2 * reach / speed;
+    const double rest = behind ? random.uniform(0.5, 3) : random.uniform(6, 9),
+                 begin = random.uniform(0.2, 6);
+    add_person(
+        scene,
+        [=](double t, Pose2& out, double& way) {
+          if (t < begin) return false;
+          const double round = (t - begin) / (span + rest),
+                       since = (t - begin) - std::floor(round) * (span + rest);
+          if (since > span) return false;
+          const double side = std::fmod(std::floor(round), 2) == 0 ? 1 : -1;
+          way = since * speed;
+          out = compose(frame, {x, side * (reach - way), -side * kPi / 2});
+          return true;
+        },
+        random);
+  }
+}
+
 void add_moved_chair(Scene& scene, const Stage& stage, Random& random) {
   const double side = random.uniform() < 0.5 ? -1 : 1, turned = random.uniform(-kPi, kPi);
   const Vec3 from = stage.T_room_stage * Vec3{stage.far_m + 0.75, side * random.uniform(0.2, 0.5), 0};

@@ -18,6 +18,7 @@ void add_robot(Scene& scene, const RobotShape& shape, const Motion& motion, cons
 Motion add_setting_down(Scene& scene, const Stage& stage, const Motion& then, Random& random);
 void add_screen(Scene& scene, const Stage& stage, Random& random);  // a box that hides the middle of the way
 void add_walker(Scene& scene, const Stage& stage, Random& random);  // somebody crosses the picture twice
+void add_crowd(Scene& scene, const Stage& stage, Random& random);   // six people go to and fro
 void add_moved_chair(Scene& scene, const Stage& stage, Random& random);  // pushed half a metre at 3 to 4.5 s
 void add_pushed_toy(Scene& scene, const Stage& stage, Random& random);   // a hand pushes and turns a toy
 

@@ -31,6 +31,7 @@ constexpr const char* kNames[] = {"lab",
                                   "set-down-by-hand",
                                   "hand-moved-object",
                                   "chair-moved",
+                                  "crowd",
                                   "empty"};
 constexpr double kTurn = 2 * kPi;
 
@@ -153,6 +154,11 @@ Plan plan_scene(const SceneOptions& options, Random& random) {
   }
   plan.robots.push_back(robot);
   if (name == "two-robots") plan.robots.push_back(second_robot(options.robot));
+  if (name == "crowd") {  // a second robot of the same kind
+    plan.robots.push_back(second_robot(options.robot));
+    plan.robots.back().model = options.robot;
+    plan.robots.back().start_s = random.uniform(0.5, 3.0);
+  }
   return plan;
 }
 
@@ -215,6 +221,7 @@ Scene make_scene(const SceneOptions& options) {
     scene.first_robot_part = 0;
   }
   if (options.name == "occluded") add_screen(scene, stage, random);
+  if (options.name == "crowd") add_crowd(scene, stage, random);
   if (options.name == "walking-legs") add_walker(scene, stage, random);
   if (options.name == "chair-moved") add_moved_chair(scene, stage, random);
   if (options.name == "hand-moved-object") add_pushed_toy(scene, stage, random);

@@ -18,6 +18,7 @@ struct SourceInfo {
   bool live = false;             // newest frame wins; otherwise every frame comes, in order
   double frame_period_s = 1.0 / 30.0;
   std::uint64_t expected_frames = 0;  // 0: not known
+  double wheel_base_m = 0;            // of the robot whose bytes a recording holds; 0: it holds none
 };
 
 class FrameSource {

@@ -11,10 +11,11 @@ sim::Scene scene_of(const std::string& name, std::uint64_t seed, bool laptop) {
   return sim::make_scene(options);
 }
 
+constexpr int kMargin_px = 14;
+
 }  // namespace
 
 EvidenceInput RobotFrame::evidence(const Pinhole& camera) const {
-  constexpr int kMargin_px = 14;
   EvidenceInput in;
   in.camera = camera;
   in.roi = box.grown(kMargin_px).clipped(depth_z.width, depth_z.height);

@@ -2,7 +2,7 @@
 
 #include <CppUTest/TestHarness.h>
 
-#include "firmware_like/path_driver.hpp"
+#include "firmware_like/robot_driver.hpp"
 
 using namespace st;
 
@@ -113,10 +113,14 @@ TEST(SafetySupervisor, HoldsWhileFramesAreLate) {
 TEST(SafetySupervisor, TheDriverStandsForAsLongAsItIsHeldAndGoesOnWithItsPath) {
   FakeBase base;
   const Path path = long_line();
-  PathDriver driver(base, path, Reaction::kHold);
+  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kHold);
+  FixedVector<OdometrySample, 64> odometry;
+  DriverView view;
   const auto drive = [&](double from_s, double to_s, const Sight& sight) {
     for (double t = from_s; t < to_s; t += 1 / 30.0) {
-      driver.decide(t, sight);
+      driver.listen(odometry);
+      view.sight = sight;
+      driver.decide(t, view);
       driver.send();
     }
   };
@@ -136,6 +140,25 @@ TEST(SafetySupervisor, TheDriverStandsForAsLongAsItIsHeldAndGoesOnWithItsPath) {
   drive(10, 10.1, {true, true, 0.02});
   DOUBLES_EQUAL(0.0, base.left, 0);
   CHECK(driver.fault() == RobotFault::kCliff);
+}
+
+// A loop that is starved has frames a fifth of a second apart: the wheels must not be thrown to and fro.
+TEST(SafetySupervisor, LateFramesDoNotMakeTheDriverOvershoot) {
+  FakeBase base;
+  Path path;
+  path.add_line(0.5);
+  path.plan();
+  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kEnd);
+  DriverView view;
+  view.sight = {true, true, 0.1};
+  double way_m = 0;
+  for (double t = 0; t < 12; t += 0.19) {
+    driver.decide(t, view);
+    driver.send();
+    CHECK(base.left > -0.03 && base.left < 0.26);
+    way_m += 0.19 * base.left;
+  }
+  DOUBLES_EQUAL(0.5, way_m, 0.01);
 }
 
 TEST(SafetySupervisor, TheTableCanBeRead) {

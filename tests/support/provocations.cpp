@@ -9,7 +9,7 @@
 #include <cstring>
 #include <thread>
 
-#include "firmware_like/path_driver.hpp"
+#include "firmware_like/robot_driver.hpp"
 #include "tests/hal/create/processes.hpp"
 
 namespace st::test {
@@ -216,12 +216,16 @@ Outcome by_camera(const Provocation& what, int after_ms) {
   path.add_line(50);
   path.plan();
   std::atomic<bool> sees{true}, frames{true}, over{false};
-  PathDriver driver(*base, path, Reaction::kEnd);
+  RobotDriver driver(*base, Steering::kOpenLoop, &path, nullptr, Reaction::kEnd);
   std::thread loop([&] {
     for (; !over.load() && driver.fault() == RobotFault::kNone; sleep_ms(33)) {
       const double now_s = static_cast<double>(monotonic_ns()) * 1e-9;
       if (frames.load()) {
-        driver.decide(now_s, {true, sees.load(), 0.02});
+        FixedVector<OdometrySample, 64> odometry;
+        driver.listen(odometry);
+        DriverView view;
+        view.sight = {true, sees.load(), 0.02};
+        driver.decide(now_s, view);
         driver.send();
       } else {
         driver.wait_without_frame(now_s);

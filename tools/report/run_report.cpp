@@ -140,8 +140,11 @@ std::string headline(const ReportInput& input) {
   return out;
 }
 
-// The base that path.csv was laid from: whose first pose is nearest to its start.
-int driver_of(const RunRecord& run, const RunStudy& study) {
+// Who drove the path: what answered to the start motion; else the base that path.csv was laid from, whose
+// first pose is nearest to its start.
+PathDriver driver_of(const RunRecord& run, const RunStudy& study) {
+  for (const RunRecord::EventRow& event : run.events)
+    if (event.event == name_of(EventKind::kSteeringObject)) return {event.object, event.t_s};
   int best = 0;
   double nearest = 0;
   for (const ObjectStudy& object : study.objects) {
@@ -150,7 +153,7 @@ int driver_of(const RunRecord& run, const RunStudy& study) {
     const double d = std::hypot(first.x - run.path.front()[1], first.y - run.path.front()[2]);
     if (best == 0 || d < nearest) best = object.id, nearest = d;
   }
-  return best;
+  return {best, -1};
 }
 
 }  // namespace
@@ -159,7 +162,7 @@ RunStudy study_record(const RunRecord& run) {
   std::vector<ObjectTrack> tracks;
   for (const RunRecord::Object& object : run.objects)
     tracks.push_back({object.id, object.rows, object.mesh.vertices});
-  const RunStudy alone = study_run(tracks, {}, 0);
+  const RunStudy alone = study_run(tracks, {}, {});
   if (run.path.empty()) return alone;
   // Back from the floor into the frame of the path's start.
   const std::array<double, 6>& start = run.path.front();

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "algo/core/scalar_math.hpp"
+#include "hal/create/robot_log_writer.hpp"
 #include "hal/create/sim/create_pty.hpp"
 #include "hal/error.hpp"
 #include "hal/system/realtime.hpp"
@@ -22,6 +23,7 @@ constexpr int kRobotPriority = 60;  // above the loop, below the guard
 struct Arguments {
   sim::CreatePtyOptions pty;
   std::vector<std::string> events;
+  std::string truth_path;
   double seconds = 0, json_hz = 0;
   bool quiet = false, events_from_stdin = false;
   int lifeline = -1;
@@ -54,6 +56,31 @@ void print_json(const sim::CreatePty& pty, double t_s) {
   std::fflush(stdout);
 }
 
+// The true pose as a table, for whoever measures what a tracker or a driver makes of it.
+class TruthFile {
+ public:
+  explicit TruthFile(const std::string& path) {
+    if (path.empty()) return;
+    file_.reset(std::fopen(path.c_str(), "w"));
+    if (!file_)
+      throw Failure(ExitCode::kBadInput, "--truth " + path + ": cannot be written; check its folder");
+    std::fputs("t,x,y,yaw\n", file_.get());
+  }
+  void take(const sim::CreateEngine& engine, double t_s) {
+    if (!file_ || t_s < due_s_) return;
+    due_s_ = t_s + 0.01;
+    const Pose2 pose = engine.body().pose();
+    std::fprintf(file_.get(), "%.6f,%.6f,%.6f,%.6f\n", host_seconds(), pose.x, pose.y, pose.yaw);
+  }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+  double due_s_ = 0;
+};
+
 // Events by name, a line each, as they come in.
 class StdinEvents {
  public:
@@ -84,6 +111,7 @@ int run(Arguments& arguments) {
     arguments.pty.events.push_back(sim::parse_world_event(text));
   watch_stop_signals();
   use_realtime_priority(kRobotPriority);  // a robot does not slow down with the load on this computer
+  TruthFile truth(arguments.truth_path);
   sim::CreatePty pty(arguments.pty);
   std::printf("%s\n", pty.path().c_str());
   std::fflush(stdout);
@@ -95,6 +123,7 @@ int run(Arguments& arguments) {
   pty.run([&](double t_s) {
     char nothing;
     if (arguments.events_from_stdin) events.take(pty);
+    truth.take(pty.engine(), t_s);
     if (arguments.json_hz > 0 && t_s >= printed_s) print_json(pty, t_s), printed_s += 1 / arguments.json_hz;
     if (live && t_s >= shown_s + 0.2) show(pty.engine(), shown_s = t_s);
     if (arguments.lifeline >= 0 && orphaned_s < 0 && read(arguments.lifeline, &nothing, 1) == 0)
@@ -181,6 +210,11 @@ void add_create_sim(CLI::App& app, int& exit_code) {
   command
       ->add_option("--json", arguments->json_hz, "print its true state so often a second, a JSON line each")
       ->check(CLI::Range(0.1, 1000.0));
+  command
+      ->add_option(
+          "--truth", arguments->truth_path,
+          "file for its true pose, a hundred times a second: t,x,y,yaw (host seconds, metres, radians)")
+      ->type_name("FILE");
   command->add_option("--at", arguments->events, "SECONDS:EVENT, any number of them");
   command->add_flag("--stdin", arguments->events_from_stdin, "take events from stdin, a name a line");
   command->add_option("--seconds", arguments->seconds, "end by itself after so long")

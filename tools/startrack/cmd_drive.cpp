@@ -14,6 +14,7 @@
 #include "hal/clock.hpp"
 #include "hal/create/drive_base.hpp"
 #include "hal/create/remote_guard.hpp"
+#include "hal/create/sim_child.hpp"
 #include "hal/error.hpp"
 #include "hal/system/key_stop.hpp"
 #include "hal/system/stop_signal.hpp"
@@ -147,7 +148,7 @@ int drive(const Arguments& arguments) {
   const Path path = load_path(arguments.path);
   watch_stop_signals();
   const std::unique_ptr<DriveBase> robot = open_robot(options);
-  if (options.port != "sim" && !arm_at_terminal()) return static_cast<int>(ExitCode::kInterrupted);
+  if (!is_simulated(options.port) && !arm_at_terminal()) return static_cast<int>(ExitCode::kInterrupted);
   const KeyStop any_key;
   Drive drive(*robot, path, reaction_on_bump(arguments.on_bump));
   drive.follow();

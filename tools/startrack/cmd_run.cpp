@@ -14,7 +14,11 @@ void add_run(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  startrack run --source kinect --seconds 60\n"
       "  startrack run --source kinect --robot /dev/ttyUSB0 --path examples/paths/circle-0.5.toml\n"
-      "  startrack run --source sim:lab --robot sim --path examples/paths/circle-0.5.toml");
+      "  startrack run --source sim:lab --robot sim --path examples/paths/circle-0.5.toml\n"
+      "  startrack run --source sim:lab --robot sim --serve 7171     # and then "
+      "tools/client/hold_circle.py\n"
+      "  startrack run --source sim:lab --robot sim:right-scale=1.03,slip=0.02 --loop closed --path "
+      "examples/paths/circle-0.5.toml");
   command
       ->add_option("--source", options->source.spec,
                    "kinect[:INDEX or SERIAL], sim:SCENE, or a recording's folder")
@@ -28,12 +32,28 @@ void add_run(CLI::App& app, int& exit_code) {
           [options](const std::uint64_t& seed) { options->source.seed = options->robot.seed = seed; },
           "of the simulated room and robot")
       ->default_str("1");
+  command
+      ->add_option_function<std::string>(
+          "--loop", [options](const std::string& loop) { options->closed_loop = loop == "closed"; },
+          "how the path is driven: open, by dead reckoning, or closed, on the pose at which the robot is "
+          "seen")
+      ->check(CLI::IsMember({"open", "closed"}))
+      ->default_str("open");
+  command
+      ->add_option("--serve", options->serve,
+                   "poses as JSON lines for programs that connect here, and with --robot but without --path "
+                   "they drive it; without HOST for this computer only, port 0: any that is free")
+      ->type_name("[HOST:]PORT");
   add_session_options(*command, *options);
   command->callback([options, on_bump, &exit_code] {
     options->on_bump = reaction_on_bump(*on_bump);
-    if (!options->robot.port.empty() && options->path_file.empty())
+    if (!options->robot.port.empty() && options->path_file.empty() && options->serve.empty())
+      throw Failure(ExitCode::kBadInput, "--robot " + options->robot.port +
+                                             " needs --path FILE, or --serve PORT for a program that drives "
+                                             "it: what shall it do?");
+    if (options->closed_loop && (options->robot.port.empty() || options->path_file.empty()))
       throw Failure(ExitCode::kBadInput,
-                    "--robot " + options->robot.port + " needs --path FILE: what shall it drive?");
+                    "--loop closed needs --robot PORT and --path FILE: what is to follow what?");
     const std::string& source = options->source.spec;
     if (!options->robot.port.empty() && !source.starts_with("kinect") && !source.starts_with("sim:"))
       throw Failure(ExitCode::kBadInput,

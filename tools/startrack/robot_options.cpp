@@ -13,7 +13,11 @@ CLI::Validator robot_models() {
 }
 
 void add_drive_options(CLI::App& command, RobotOptions& robot, std::string& on_bump) {
-  command.add_option("--robot", robot.port, "a serial device such as /dev/ttyUSB0, tcp:HOST:PORT, or sim")
+  command
+      .add_option(
+          "--robot", robot.port,
+          "a serial device such as /dev/ttyUSB0, tcp:HOST:PORT, or sim[:SWITCH=VALUE,...] with switches of "
+          "create-sim")
       ->type_name("PORT");
   command
       .add_option("--wheel-base", robot.wheels.wheel_base_m, "measured, in metres, instead of the model's")

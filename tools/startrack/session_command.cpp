@@ -1,8 +1,10 @@
 #include "tools/startrack/session_command.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
+#include "hal/recording/text.hpp"
 #include "tools/report/run_report.hpp"
 #include "tools/startrack/model_picture.hpp"
 #include "tools/startrack/run_table.hpp"
@@ -14,11 +16,9 @@ struct Term {
   const char* name;
   bool LoopConfig::*used;
 };
-constexpr Term kTerms[] = {{"edges", &LoopConfig::use_contour},
-                           {"colour", &LoopConfig::use_color},
-                           {"floor", &LoopConfig::use_floor},
-                           {"motion", &LoopConfig::use_motion},
-                           {"cleaning", &LoopConfig::use_cleaning}};
+constexpr Term kTerms[] = {{"edges", &LoopConfig::use_contour},   {"colour", &LoopConfig::use_color},
+                           {"floor", &LoopConfig::use_floor},     {"motion", &LoopConfig::use_motion},
+                           {"odometry", &LoopConfig::use_wheels}, {"cleaning", &LoopConfig::use_cleaning}};
 
 void leave_out(LoopConfig& config, const std::string& name) {
   for (const Term& term : kTerms) {
@@ -26,8 +26,31 @@ void leave_out(LoopConfig& config, const std::string& name) {
     config.*term.used = false;
     return;
   }
-  throw Failure(ExitCode::kBadInput,
-                "--without " + name + ": no such term; there are edges, colour, floor, motion, cleaning");
+  throw Failure(ExitCode::kBadInput, "--without " + name +
+                                         ": no such term; there are edges, colour, floor, motion, odometry, "
+                                         "cleaning");
+}
+
+// "x1,y1;x2,y2;..."
+void read_arena(LoopConfig& config, const std::string& text) {
+  const auto refuse = [&](const std::string& why) {
+    throw Failure(ExitCode::kBadInput, "--arena " + text + ": " + why +
+                                           "; give three to sixteen corners in metres, such as "
+                                           "\"0.5,-1;3,-1;3,1;0.5,1\"");
+  };
+  config.arena.clear();
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::string_view corner = rest.substr(0, rest.find(';'));
+    rest.remove_prefix(std::min(corner.size() + 1, rest.size()));
+    const std::size_t comma = corner.find(',');
+    PlanePoint p;
+    if (comma == std::string_view::npos || !parse_number(trimmed(corner.substr(0, comma)), p.x_m) ||
+        !parse_number(trimmed(corner.substr(comma + 1)), p.y_m))
+      refuse("`" + std::string(corner) + "` is no corner");
+    if (!config.arena.push_back(p)) refuse("too many corners");
+  }
+  if (config.arena.size() < 3) refuse("that is no area");
 }
 
 }  // namespace
@@ -76,8 +99,9 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
           },
           "leave pose terms out: edges (outline and free space), colour (the model's print), floor (height "
           "and "
-          "upright of what rests on it), motion (the predicted pose as a prior); these four leave projective "
-          "ICP alone; cleaning: pixels at steps in depth count, too")
+          "upright of what rests on it), motion (the predicted pose as a prior), odometry (the turn that the "
+          "wheels tell); these five leave projective ICP alone; cleaning: pixels at "
+          "steps in depth count, too")
       ->delimiter(',')
       ->type_name("TERM[,TERM]");
   command
@@ -102,6 +126,12 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
   command.add_option("--volume", options.loop.volume_side, "voxels a side of each object's volume")
       ->check(CLI::IsMember({128, 192, 256, 384, 512}));
   command.add_option("--simd", options.simd, "instruction set: SSSE3, SSE4, AVX2 or AVX3")->type_name("NAME");
+  command
+      .add_option_function<std::string>(
+          "--arena", [&options](const std::string& text) { read_arena(options.loop, text); },
+          "corners of the floor area outside of which no track starts, in metres from below the camera: x "
+          "ahead, y to the left")
+      ->type_name("X,Y;X,Y;...");
   command.add_option("--seconds", options.loop.seconds, "stop after so long")->check(CLI::NonNegativeNumber);
   command.add_option("--out", options.out, "run folder (default: runs/DATE-TIME-SOURCE)")->type_name("RUN");
   command.add_flag("--force", options.force, "replace the result files of an earlier run in --out");

@@ -86,6 +86,20 @@ TEST(MotionFilter, UncertaintyGrowsWithTimeAndShrinksWithAPose) {
   CHECK(filter.position_sigma_m() < soon);
 }
 
+TEST(MotionFilter, CovarianceIsTheInverseOfThePriorsInformation) {
+  MotionFilter filter = after(5, {1e-3, 3e-3});
+  filter.predict(filter.t_s() + kPeriod_s, {});
+  double covariance[36];
+  filter.covariance(covariance);
+  const MotionPrior prior = filter.prior();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      double product = 0;
+      for (int k = 0; k < 6; ++k) product += covariance[6 * i + k] * prior.information[6 * k + j];
+      DOUBLES_EQUAL(i == j ? 1 : 0, product, 1e-9);
+    }
+}
+
 TEST(MotionFilter, RatesFollowAPoseByAsMuchAsItIsSure) {
   // One frame with the same surprise, seen sharply and hardly.
   const auto rate_after = [](double sigma_m) {

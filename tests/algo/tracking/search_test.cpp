@@ -22,8 +22,8 @@ TEST_GROUP(SearchForLost) {
 TEST(SearchForLost, OnlyPointsNearTheTriedModelTakePart) {
   const FlatView view({60, 40, 80, 60}, {0, 0, -1}, -1.05f);
   for (int v = 40; v < 60; ++v) depth[static_cast<std::size_t>(v * kW + 70)] = 0.8f;  // an arm in front
-  const std::size_t used = gather_near_view({depth.data(), kW, kH}, {owners.data(), kW, kH}, 1, view.view,
-                                            kSmallCamera, points);
+  const std::size_t used =
+      gather_near_view({depth.data(), kW, kH}, {owners.data(), kW, kH}, 1, view.view, kSmallCamera, points);
   CHECK(used > 19 * 20);              // the model's pixels without the arm's
   CHECK(used < (20 + 4) * (20 + 4));  // and a narrow seam about them
   for (std::size_t i = 0; i < used; ++i) CHECK(points[i].p.z > 0.9f);

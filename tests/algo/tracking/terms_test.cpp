@@ -87,8 +87,7 @@ TEST(TrackingTerms, DepthRefusesWhatIsTooFarAway) {
   const FlatView flat({60, 40, 110, 90}, {0, 0, -1}, -1.2f);
   build_view_table(flat.view, view);
   std::vector<ObservedPoint> seen;
-  for (const float gap : {0.0f, 0.004f, 0.2f, -0.2f})
-    seen.push_back({on_pixel(80, 60, 1.2f - gap), 80, 60});
+  for (const float gap : {0.0f, 0.004f, 0.2f, -0.2f}) seen.push_back({on_pixel(80, 60, 1.2f - gap), 80, 60});
   seen.push_back({on_pixel(10, 10, 1.2f), 10, 10});  // beside the view
   arrange_points(seen, PointTable::kMost, points);
   DepthTermOptions options;

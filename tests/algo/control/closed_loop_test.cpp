@@ -1,0 +1,226 @@
+// The closed loop against an analytic robot: wheels that are not as large as believed, a tracker that sees
+// the robot's pose with noise, in a frame of its own, and late.
+#include <CppUTest/TestHarness.h>
+
+#include <cmath>
+#include <deque>
+#include <memory>
+
+#include "algo/control/base_tracker.hpp"
+#include "algo/control/follower.hpp"
+#include "algo/control/motion_match.hpp"
+#include "algo/control/pose_follower.hpp"
+#include "algo/core/scalar_math.hpp"
+#include "hal/sim/random.hpp"
+
+using namespace st;
+
+namespace {
+
+constexpr double kBase_m = 0.235, kFrame_s = 1.0 / 30.0;
+const Pose2 kObjectBase{0.03, -0.02, 2.1};  // the robot's base in the frame of the tracked object
+
+struct Robot {
+  double right_scale = 1.03;
+  Pose2 pose{0.4, -0.7, 0.9};
+
+  void roll(const WheelSpeeds& told, double dt_s) {
+    const double right = told.right_mps * right_scale;
+    pose = advanced(pose, 0.5 * (told.left_mps + right) * dt_s, (right - told.left_mps) / kBase_m * dt_s);
+  }
+};
+
+WheelOdometry odometry(const WheelSpeeds& told, double dt_s) {
+  return {true, 0.5 * (told.left_mps + told.right_mps) * dt_s,
+          (told.right_mps - told.left_mps) / kBase_m * dt_s, dt_s};
+}
+
+SeenObject seen(int id, const Pose2& base, sim::Random& random) {
+  SeenObject object;
+  object.id = id;
+  object.good = object.has_heading = true;
+  object.pose = compose(base, inverse(kObjectBase));
+  object.pose = {object.pose.x + 0.001 * random.normal(), object.pose.y + 0.001 * random.normal(),
+                 object.pose.yaw + 0.006 * random.normal()};
+  return object;
+}
+
+// Drives the start motion; `others(t)` adds what else is seen. The camera is `lag_frames` late.
+template <typename Others>
+Obedience start(Robot& robot, sim::Random& random, std::size_t lag_frames, Others&& others) {
+  const Path path = start_motion();
+  auto witness = std::make_unique<StartWitness>();
+  OpenLoopFollower follower(path, kBase_m);
+  std::deque<Pose2> late(lag_frames + 1, robot.pose);
+  WheelSpeeds speeds;
+  double t = 0;
+  for (int i = 0; i < 200; ++i, t += kFrame_s) {
+    SeenObjects objects;
+    objects.push_back(seen(1, late.front(), random));
+    others(t, objects);
+    witness->add(odometry(speeds, kFrame_s), objects);
+    speeds = follower.done() ? WheelSpeeds{} : follower.step(i == 0 ? 0 : kFrame_s, kFrame_s);
+    robot.roll(speeds, kFrame_s);
+    late.push_back(robot.pose);
+    late.pop_front();
+  }
+  return witness->judge();
+}
+
+const auto kNobodyElse = [](double, SeenObjects&) {};
+
+}  // namespace
+
+TEST_GROUP(ClosedLoop) {
+  sim::Random random{7};
+  Robot robot;
+};
+
+TEST(ClosedLoop, TheStartMotionStaysWithinItsBoundsAndEndsWhereItBegan) {
+  const Path path = start_motion();
+  for (double t = 0; t < path.duration_s(); t += 0.01) {
+    const PathSample p = sample(path, t);
+    CHECK(std::fabs(p.x_m) <= 0.05 && std::fabs(p.y_m) < 1e-9);
+    CHECK(std::fabs(p.yaw_rad) <= 10 * kPi / 180);
+  }
+  DOUBLES_EQUAL(0, sample(path, path.duration_s()).x_m, 1e-9);
+  DOUBLES_EQUAL(0, sample(path, path.duration_s()).yaw_rad, 1e-9);
+}
+
+TEST(ClosedLoop, WhatObeyedTellsItsBaseAndTheCamerasLag) {
+  for (const std::size_t lag : {std::size_t{0}, std::size_t{3}}) {
+    const Obedience o = start(robot, random, lag, kNobodyElse);
+    LONGS_EQUAL(1, o.id);
+    DOUBLES_EQUAL(static_cast<double>(lag) * kFrame_s, o.lag_s, 0.012);
+    DOUBLES_EQUAL(kObjectBase.x, o.base.T_object_base.x, 0.006);
+    DOUBLES_EQUAL(kObjectBase.y, o.base.T_object_base.y, 0.006);
+    DOUBLES_EQUAL(0, wrap_angle(kObjectBase.yaw - o.base.T_object_base.yaw), 0.03);
+    DOUBLES_EQUAL(1.015, o.base.gain, 0.02);
+  }
+}
+
+// A walker, a robot that drives on its own, one that stands, and one that does the same thing a second later.
+TEST(ClosedLoop, NobodyElseIsTakenForTheRobot) {
+  const Path path = start_motion();
+  const auto others = [&](double t, SeenObjects& objects) {
+    objects.push_back(seen(2, {0.9 * t - 2, 0.3 * std::sin(6 * t), 0.3 * std::sin(3 * t)}, random));
+    objects.push_back(seen(3, advanced({1, 1, 0}, 0.2 * t, 0.4 * t), random));
+    const PathSample later = sample(path, t - 1);
+    objects.push_back(seen(4, compose({0, 2, 1}, {later.x_m, later.y_m, later.yaw_rad}), random));
+  };
+  for (int i = 0; i < 20; ++i) LONGS_EQUAL(1, start(robot, random, 1, others).id);
+}
+
+TEST(ClosedLoop, NothingIsPickedWhereNothingObeysOrTwoDo) {
+  Robot still;
+  const Path path = start_motion();
+  auto witness = std::make_unique<StartWitness>();
+  for (int i = 0; i < 150; ++i) {  // the wheels turn, and nothing moves
+    SeenObjects objects;
+    objects.push_back(seen(1, still.pose, random));
+    const PathSample a = sample(path, i * kFrame_s), b = sample(path, (i + 1) * kFrame_s);
+    witness->add({true, b.x_m - a.x_m, b.yaw_rad - a.yaw_rad, kFrame_s}, objects);
+  }
+  LONGS_EQUAL(0, witness->judge().id);
+  // A twin that is driven by the same commands: nobody can tell them apart.
+  const auto twin = [&](double, SeenObjects& objects) {
+    SeenObject object = objects[0];
+    object.id = 2;
+    object.pose = compose({1, 1, 1}, object.pose);
+    objects.push_back(object);
+  };
+  LONGS_EQUAL(0, start(robot, random, 1, twin).id);
+}
+
+TEST(ClosedLoop, ThePathIsHeldWithUnequalWheelsAndFiveTimesAsWellAsWithout) {
+  for (const double speed_mps : {0.2, 0.4}) {
+    Path path;
+    path.limits.speed_mps = speed_mps;
+    path.add_arc(0.5, 2 * kPi);
+    path.add_line(0.5);
+    path.add_turn(kPi / 2);
+    path.add_line(0.5);
+    path.plan();
+    Robot closed, open;
+    closed.pose = {};
+    const Obedience o = start(closed, random, 1, kNobodyElse);
+    BaseTracker tracker;
+    tracker.start(o, seen(1, closed.pose, random).pose);
+    const Pose2 T_floor_path = closed.pose;
+    open.pose = closed.pose;
+    PoseFollower follower(path, kBase_m);
+    OpenLoopFollower blind(path, kBase_m);
+    WheelSpeeds told, blind_told;
+    double worst = 0, worst_open = 0;
+    for (int i = 0; !follower.done() && i < 3000; ++i) {
+      const SeenObject object = seen(1, closed.pose, random);
+      // A second without sight on the way: the wheels carry it.
+      const bool covered = i > 150 && i < 180;
+      tracker.update(odometry(told, i == 0 ? 0 : kFrame_s), 0, 0, covered ? nullptr : &object);
+      CHECK(tracker.seen() == !covered);
+      told = follower.step(compose(inverse(T_floor_path), tracker.base()), i == 0 ? 0 : kFrame_s);
+      blind_told = blind.done() ? WheelSpeeds{} : blind.step(i == 0 ? 0 : kFrame_s, kFrame_s);
+      closed.roll(told, kFrame_s);
+      open.roll(blind_told, kFrame_s);
+      const PathSample to = follower.target();
+      const Pose2 target = compose(T_floor_path, {to.x_m, to.y_m, 0});
+      worst = std::max(worst, std::hypot(closed.pose.x - target.x, closed.pose.y - target.y));
+      worst_open = std::max(worst_open, std::hypot(open.pose.x - target.x, open.pose.y - target.y));
+    }
+    CHECK(follower.done());
+    CHECK(worst < 0.03);
+    CHECK(worst_open > 5 * worst);
+  }
+}
+
+TEST(ClosedLoop, AJumpOfThePoseIsNotFollowedAtOnce) {
+  const Obedience o = start(robot, random, 0, kNobodyElse);
+  BaseTracker tracker;
+  tracker.start(o, seen(1, robot.pose, random).pose);
+  SeenObject wrong = seen(1, robot.pose, random);
+  wrong.pose.x += 0.5;
+  const Pose2 before = tracker.base();
+  tracker.update(odometry({}, kFrame_s), 0, 0, &wrong);
+  CHECK_FALSE(tracker.seen());
+  DOUBLES_EQUAL(before.x, tracker.base().x, 1e-9);
+  for (int i = 0; i < 30; ++i) tracker.update(odometry({}, kFrame_s), 0, 0, &wrong);
+  CHECK(tracker.seen());  // it stays there: somebody carried the robot
+  DOUBLES_EQUAL(before.x + 0.5, tracker.base().x, 0.01);
+}
+
+// What a tracker does on a round robot without a print: places are right, headings slide away.
+TEST(ClosedLoop, AHeadingThatSlidesIsLeftOut) {
+  const Obedience o = start(robot, random, 0, kNobodyElse);
+  BaseTracker tracker;
+  tracker.start(o, seen(1, robot.pose, random).pose);
+  const WheelSpeeds told = wheel_speeds(0.2, 0.4, kBase_m);
+  double slide = 0, worst_m = 0, worst_rad = 0;
+  for (int i = 0; i < 400; ++i) {
+    robot.roll(told, kFrame_s);
+    if (i > 150 && i < 200) slide += 0.05;
+    if (i == 250) slide = 0;
+    SeenObject object = seen(1, robot.pose, random);
+    object.pose.yaw += slide;
+    tracker.update(odometry(told, kFrame_s), 0, 0, &object);
+    CHECK(tracker.seen());
+    const Pose2 at = tracker.base();
+    worst_m = std::max(worst_m, std::hypot(at.x - robot.pose.x, at.y - robot.pose.y));
+    worst_rad = std::max(worst_rad, std::fabs(wrap_angle(at.yaw - robot.pose.yaw)));
+  }
+  CHECK(worst_m < 0.015);
+  CHECK(worst_rad < 0.12);
+}
+
+TEST(ClosedLoop, AnOpenLoopKnowsAfterwardsWhoWentAlong) {
+  MotionMatch match;
+  LONGS_EQUAL(0, match.best());
+  const WheelSpeeds told = wheel_speeds(0.2, 0.4, kBase_m);
+  for (int i = 0; i < 200; ++i) {
+    SeenObjects objects;
+    objects.push_back(seen(1, {i * 0.03, 0, 0}, random));  // walks straight on
+    objects.push_back(seen(2, robot.pose, random));
+    match.add(odometry(told, kFrame_s), objects);
+    robot.roll(told, kFrame_s);
+  }
+  LONGS_EQUAL(2, match.best());
+}
