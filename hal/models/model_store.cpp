@@ -195,7 +195,7 @@ bool ModelStore::has_name(const std::string& name) {
 std::string ModelStore::free_name(const std::string& stem, bool bare_first) {
   if (bare_first && !has_name(stem)) return stem;
   for (int n = bare_first ? 2 : 1;; ++n) {
-    const std::string name = stem + "-" + std::to_string(n);
+    std::string name = stem + "-" + std::to_string(n);
     if (!has_name(name)) return name;
   }
 }
