@@ -6,10 +6,16 @@
 
 #include "algo/core/fixed_vector.hpp"
 #include "algo/core/polygon.hpp"
+#include "algo/recognition/recognition.hpp"
 
 namespace st {
 
-enum class TrackerKind { kStar, kFrameToFrame, kListing1 };
+// The last two track by 3-D SIFT alone: matched with the database, or with the frame before.
+enum class TrackerKind { kStar, kFrameToFrame, kListing1, kRecognition, kSiftMotion };
+
+inline bool tracks_by_matches(TrackerKind kind) {
+  return kind == TrackerKind::kRecognition || kind == TrackerKind::kSiftMotion;
+}
 
 enum class Mode { kObject, kScan };
 
@@ -32,6 +38,8 @@ struct LoopConfig {
   // laid on the floor, y to the left.
   FixedVector<PlanePoint, 16> arena;
   bool use_contour = true, use_color = true, use_floor = true, use_motion = true, use_wheels = true;
+  bool use_cleaning = true;  // pixels at steps in depth say nothing of a shape
+  RecognitionWay recognition = RecognitionWay::kMatchesAndHeadings;
   double camera_lag_s = 0;  // the camera's delay beyond that of the wheels' reports (calibrated)
   double seconds = 0;       // stop after so much recorded (or live) time; 0: at the end
 };

@@ -6,6 +6,7 @@
 #include "firmware_like/budget.hpp"
 #include "firmware_like/loop.hpp"
 #include "firmware_like/memory_plan.hpp"
+#include "firmware_like/model_keeper.hpp"
 #include "hal/results/run_end.hpp"
 
 namespace st {
@@ -23,6 +24,9 @@ class ModeRun {
   virtual void describe(RunEnd& end) = 0;
 };
 
-std::unique_ptr<ModeRun> make_mode(const Calibration& calibration, const LoopConfig& config);
+// `known`: for object mode; read here. Throws Failure (kBadInput) when its file is no database, and when the
+// tracker needs one that is not given.
+std::unique_ptr<ModeRun> make_mode(const Calibration& calibration, const LoopConfig& config,
+                                   const KnownObjects& known);
 
 }  // namespace st

@@ -2,7 +2,7 @@
 
 namespace st {
 
-MeshView ModelMeshes::extract(const Volume& volume) {
+MeshView ModelMeshes::extract(const Volume& volume, const Pose& T_mesh_volume) {
   constexpr std::size_t kLeastTriangles = 50;
   MeshScratch scratch;
   Bump measure;
@@ -19,6 +19,11 @@ MeshView ModelMeshes::extract(const Volume& volume) {
   const MeshCounts kept = remove_fragments(mesh.vertices, mesh.indices, kLeastTriangles, fragments);
   mesh.vertices.resize(kept.vertices);
   mesh.indices.resize(3 * kept.triangles);
+  const PoseF T = to_float(T_mesh_volume);
+  for (MeshVertex& vertex : mesh.vertices) {
+    vertex.position = T * vertex.position;
+    vertex.normal = T.R * vertex.normal;
+  }
   return {mesh.vertices, mesh.indices};
 }
 

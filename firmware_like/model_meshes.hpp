@@ -4,14 +4,16 @@
 #include <deque>
 #include <vector>
 
+#include "algo/core/pose.hpp"
 #include "algo/volume/mesh.hpp"
 
 namespace st {
 
 class ModelMeshes {
  public:
-  // The view holds as long as this object. Pieces of fewer than 50 triangles are noise and left out.
-  MeshView extract(const Volume& volume);
+  // In the frame that T_mesh_volume leads to. The view holds as long as this object. Pieces of fewer than 50
+  // triangles are noise and left out.
+  MeshView extract(const Volume& volume, const Pose& T_mesh_volume = {});
 
  private:
   struct Mesh {

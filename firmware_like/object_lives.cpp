@@ -157,7 +157,10 @@ void ObjectTracker::decide_lives(const LadderStep& step) {
   }
   drop_doubles();
   begin_released();
-  search_step(step);
+  if (!tracks_by_matches()) {
+    search_step(step);
+    recognition_step(step);
+  }
   begin_tracks();
   confirm_proven();
   freeze_background();

@@ -23,6 +23,23 @@ void floor_sigmas(const double (&covariance)[36], const Mat3& R_floor_camera, Ve
   }
 }
 
+// Covariance of a pose (position, rotation about the camera's axes) with its origin moved by `arm`: a turn w
+// moves it by w x arm.
+void move_origin(const double (&from)[36], const Vec3& arm, double (&to)[36]) {
+  const double J[3][3] = {{0, arm.z, -arm.y}, {-arm.z, 0, arm.x}, {arm.y, -arm.x, 0}};
+  double rows[36];
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) {
+      rows[6 * r + c] = from[6 * r + c];
+      for (int i = 0; r < 3 && i < 3; ++i) rows[6 * r + c] += J[r][i] * from[6 * (3 + i) + c];
+    }
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) {
+      to[6 * r + c] = rows[6 * r + c];
+      for (int i = 0; c < 3 && i < 3; ++i) to[6 * r + c] += rows[6 * r + 3 + i] * J[c][i];
+    }
+}
+
 // What no single alignment knows of its error: the model was built from poses of the same tracker, and is off
 // by as much as they were. Chosen so that squared errors are as large as they claim to be (normalised
 // estimation error squared near one) over the simulated scenes; position grows with the sensor's noise.
@@ -63,7 +80,8 @@ ObjectSample ObjectTracker::sample_of(Track& track) const {
   if (tracked && track.state == TrackState::kGood) {
     s.state = TrackState::kGood;
     track.published_gap = 0;
-  } else if (tracked && track.published_gap < kLongestGap && track.poor_run <= kLongestGap) {
+  } else if (tracked && !tracks_by_matches() && track.published_gap < kLongestGap &&
+             track.poor_run <= kLongestGap) {
     s.state = TrackState::kPredicted;
     ++track.published_gap;
   } else {
@@ -71,13 +89,16 @@ ObjectSample ObjectTracker::sample_of(Track& track) const {
     return s;
   }
   s.in_tum = true;
-  s.T_camera_object = track.T_camera_object;
-  s.T_floor_object = T_floor_camera_ * track.T_camera_object;
-  double covariance[36];
-  track.motion.covariance(covariance);
+  // A recognised object keeps the frame that it had: poses, rates and covariance are those of its origin.
+  s.T_camera_object = track.T_camera_object * track.T_model_object;
+  s.T_floor_object = T_floor_camera_ * s.T_camera_object;
+  const Vec3 arm = s.T_camera_object.t - track.T_camera_object.t;
+  double own[36], covariance[36];
+  track.motion.covariance(own);
   if (s.state == TrackState::kGood)
-    for (int i = 0; i < 36; ++i) covariance[i] = track.aligned.covariance[i];
-  add_model_error(support_.up, track.T_camera_object.t.z, covariance);
+    for (int i = 0; i < 36; ++i) own[i] = track.aligned.covariance[i];
+  add_model_error(support_.up, track.T_camera_object.t.z, own);
+  move_origin(own, arm, covariance);
   int k = 0;
   for (int i = 0; i < 6; ++i)
     for (int j = i; j < 6; ++j) s.covariance[k++] = covariance[6 * i + j];
@@ -86,11 +107,10 @@ ObjectSample ObjectTracker::sample_of(Track& track) const {
   track.yaw_unwrapped += wrap_angle(yaw - track.yaw_unwrapped);
   s.yaw_unwrapped = track.yaw_unwrapped;
   const MotionOutput& motion = track.motion.output();
-  s.velocity_mps = motion.velocity_mps;
+  s.velocity_mps = motion.velocity_mps + cross(motion.angular_velocity_rps, T_floor_camera_.R * arm);
   s.angular_velocity_rps = motion.angular_velocity_rps;
   s.acceleration_mps2 = motion.acceleration_mps2;
-  s.v_mps = std::sqrt(motion.velocity_mps.x * motion.velocity_mps.x +
-                      motion.velocity_mps.y * motion.velocity_mps.y);
+  s.v_mps = std::sqrt(s.velocity_mps.x * s.velocity_mps.x + s.velocity_mps.y * s.velocity_mps.y);
   s.w_rps = motion.angular_velocity_rps.z;
   s.alpha_rps2 = motion.turn_acceleration_rps2.z;
   s.yaw_source = track.state == TrackState::kGood ? track.yaw_source : YawSource::kNone;

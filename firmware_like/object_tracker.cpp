@@ -27,9 +27,10 @@ bool moved_since_birth(const Track& track) {
 }  // namespace
 
 ObjectTracker::ObjectTracker(const Calibration& calibration, const LoopConfig& config)
-    : parts_{{this, &ObjectTracker::bind_images},  {this, &ObjectTracker::bind_segmenter},
-             {this, &ObjectTracker::bind_volumes}, {this, &ObjectTracker::bind_views},
-             {this, &ObjectTracker::bind_points},  {this, &ObjectTracker::bind_integration}},
+    : parts_{{this, &ObjectTracker::bind_images},      {this, &ObjectTracker::bind_segmenter},
+             {this, &ObjectTracker::bind_volumes},     {this, &ObjectTracker::bind_views},
+             {this, &ObjectTracker::bind_points},      {this, &ObjectTracker::bind_integration},
+             {this, &ObjectTracker::bind_recognition}, {this, &ObjectTracker::bind_seen_features}},
       calibration_(calibration),
       config_(config) {
   if (config_.volume_side == 0) config_.volume_side = 128;
@@ -43,6 +44,8 @@ void ObjectTracker::plan_memory(MemoryPlan& plan) {
   plan.add("views of the models", "algo/tracking", parts_[3]);
   plan.add("observed points", "algo/tracking", parts_[4]);
   plan.add("work memory of the fusion", "algo/volume", parts_[5]);
+  if (knows_models() || tracks_by_matches()) plan.add("recognition", "algo/recognition", parts_[6]);
+  if (tracks_by_matches()) plan.add("features of the frame before", "algo/recognition", parts_[7]);
 }
 
 void ObjectTracker::bind_images(Bump& memory) {
@@ -205,7 +208,7 @@ void ObjectTracker::align_one(Track& track, std::size_t k, const LadderStep& ste
 
 void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box) {
   const std::uint8_t owner = static_cast<std::uint8_t>(k + 1);
-  mark_edges(frame_.depth_z, owner, box, frame_.owners);
+  if (config_.use_cleaning) mark_edges(frame_.depth_z, owner, box, frame_.owners);
   track.points_used = gather_points(frame_.depth_z, frame_.owners, owner, box, frame_.camera, points_of(k));
 }
 
@@ -298,7 +301,8 @@ void ObjectTracker::align_all(const LadderStep& step) {
   }
   look_at_colors(seen.clipped(frame_.depth_z.width, frame_.depth_z.height), step);
   for (std::size_t k = 0; k < kMaxObjects; ++k)
-    if (tracks_[k].active()) align_one(tracks_[k], k, step);
+    if (tracks_[k].active())
+      tracks_by_matches() ? align_by_matches(tracks_[k], k) : align_one(tracks_[k], k, step);
 }
 
 void ObjectTracker::judge_one(Track& track) {
@@ -335,11 +339,12 @@ void ObjectTracker::judge_one(Track& track) {
 
 void ObjectTracker::judge_all() {
   for (Track& track : tracks_)
-    if (track.active()) judge_one(track);
+    if (track.active()) tracks_by_matches() ? judge_matches(track) : judge_one(track);
   match_wheels();
 }
 
 void ObjectTracker::integrate_all(const LadderStep& step) {
+  if (tracks_by_matches()) return;  // no model is kept
   for (std::size_t k = 0; k < kMaxObjects; ++k) {
     Track& track = tracks_[k];
     if (!track.active() || track.state != TrackState::kGood || !step.integrate) continue;

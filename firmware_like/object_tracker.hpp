@@ -4,6 +4,7 @@
 
 #include "algo/control/start_motion.hpp"
 #include "algo/core/bump.hpp"
+#include "algo/recognition/recognition.hpp"
 #include "algo/segmentation/segmenter.hpp"
 #include "algo/tracking/associate.hpp"
 #include "algo/tracking/closest_point.hpp"
@@ -20,6 +21,8 @@
 
 namespace st {
 
+class ModelLibrary;
+
 // What a run's summary says of one confirmed object; outlives its track.
 struct ObjectCount {
   int id = 0;
@@ -27,7 +30,15 @@ struct ObjectCount {
   std::uint64_t tracked = 0, lost = 0;
   std::uint64_t aligned = 0, iterations = 0;  // frames with an alignment, and what those took together
   bool good_at_end = false, left_view = false;
+  int known_model = -1;  // of the database
+  Pose T_model_object{};
 };
+// Recognition tracker: frames with a segment, and at which stage those without a pose failed.
+struct MatchCounts {
+  std::uint64_t frames = 0, found = 0;
+  std::uint64_t no_keypoints = 0, no_matches = 0, no_agreement = 0, not_verified = 0;
+};
+
 using ObjectCounts = FixedVector<ObjectCount, 64>;
 
 class ObjectTracker {
@@ -39,6 +50,9 @@ class ObjectTracker {
   ObjectTracker(const Calibration& calibration, const LoopConfig& config);
   ObjectTracker(const ObjectTracker&) = delete;  // the memory plan holds its address
   ObjectTracker& operator=(const ObjectTracker&) = delete;
+
+  // The models of earlier runs, to be recognised; outlives this. Before plan_memory().
+  void know(const ModelLibrary& library) { library_ = &library; }
 
   // Enters everything that needs memory into the plan; once the plan is sealed, start() makes it ready for
   // frames.
@@ -60,6 +74,7 @@ class ObjectTracker {
   // For the end of a run.
   std::span<const Track> tracks() const { return tracks_; }
   const ObjectCounts& counts() const { return counts_; }
+  const MatchCounts& match_counts() const { return match_counts_; }
   bool has_floor_frame() const { return has_floor_frame_; }
   const Pose& T_floor_camera() const { return T_floor_camera_; }
   bool floor_found() const { return support_.found; }
@@ -77,6 +92,8 @@ class ObjectTracker {
   void bind_views(Bump& memory);
   void bind_points(Bump& memory);
   void bind_integration(Bump& memory);
+  void bind_recognition(Bump& memory);
+  void bind_seen_features(Bump& memory);
 
   void update_support();
   bool ask_wheels(Track& track);
@@ -100,6 +117,17 @@ class ObjectTracker {
   void remember(const Track& track, std::size_t k);
   void note_integrated(Track& track, const IntegrateStats& stats);
   void fuse_at_rest(Track& track, const Rect& box);
+
+  bool tracks_by_matches() const;
+  void align_by_matches(Track& track, std::size_t k);
+  bool match_database(Track& track);
+  bool match_frame_before(Track& track, std::size_t k);
+  void judge_matches(Track& track);
+  bool knows_models() const;
+  bool wants_look_up(const Track& track) const;
+  void start_recognition();
+  void recognition_step(const LadderStep& step);
+  bool adopt_model(Track& track, const Recognised& answer);
 
   void confirm(Track& track);
   bool is_proven(const Track& candidate) const;
@@ -136,7 +164,7 @@ class ObjectTracker {
   ObjectCount* count_of(int id);  // null: more objects than the list holds
   void freeze_background();
 
-  Part parts_[6];
+  Part parts_[8];
   Calibration calibration_;
   LoopConfig config_;
   Frame frame_;
@@ -162,6 +190,17 @@ class ObjectTracker {
   ImageView<float> rest_z_;
   ImageView<std::uint32_t> registered_color_;  // of the objects' pixels, pack_rgb
   IntegrateScratch integrate_scratch_;
+  const ModelLibrary* library_ = nullptr;
+  Recognition recognition_;
+  std::size_t recognised_track_ = 0;
+  int recognised_id_ = 0;
+  static constexpr int kLeastMatches = 3;
+  struct SeenFeatures {  // of the frame before
+    std::span<Feature> features;
+    std::span<Descriptor> descriptors;
+    std::size_t used = 0;
+  } seen_features_[kMaxObjects];
+  MatchCounts match_counts_;
   UnexplainedList unexplained_;
   Search search_;
   struct Newcomer {  // an unexplained segment that was there in the frame before, too

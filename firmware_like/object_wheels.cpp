@@ -41,7 +41,7 @@ void ObjectTracker::match_wheels() {
   went_along_.begin_frame(frame_.input->wheels);
   for (const Track& track : tracks_) {
     if (track.id == 0 || track.phase != Track::Phase::kTracked || track.state != TrackState::kGood) continue;
-    const Pose2 at = support_.on_floor(track.T_camera_object);
+    const Pose2 at = support_.on_floor(track.T_camera_object * track.T_model_object);
     went_along_.add(track.id, at.x, at.y);
   }
   wheeled_id_ = went_along_.best();

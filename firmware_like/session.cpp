@@ -115,7 +115,7 @@ SessionResult run_session(const SessionOptions& options) {
   result.folder = prepare_run_folder(options.out, info.short_name, options.force);
   if (!info.calibration_note.empty()) std::fprintf(stderr, "startrack: %s\n", info.calibration_note.c_str());
 
-  const std::unique_ptr<ModeRun> mode = make_mode(info.calibration, options.loop);
+  const std::unique_ptr<ModeRun> mode = make_mode(info.calibration, options.loop, options.known);
   ReportRing ring;
   BudgetMonitor budget(mode->budget(), info.frame_period_s);
   MemoryPlan plan;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware_like/config.hpp"
+#include "firmware_like/model_keeper.hpp"
 #include "hal/create/safety_rules.hpp"
 #include "hal/error.hpp"
 #include "hal/source/frame_source.hpp"
@@ -21,6 +22,7 @@ struct SessionOptions {
   LoopConfig loop;
   std::string tracker_name = "star";
   std::string record;  // folder for a recording of what the run saw; empty: none
+  KnownObjects known;  // object mode
   std::string out;     // run folder; empty: runs/DATE-TIME-SOURCE
   bool force = false;
   std::string simd;  // empty: the best that this CPU has

@@ -43,10 +43,15 @@ std::vector<ObjectEnd> object_ends(const ObjectTracker& tracker, ModelMeshes& me
     object.good_at_end = count.good_at_end;
     object.left_view = count.left_view;
     for (const Track& track : tracker.tracks())
-      if (track.id == count.id && !mesh_unwanted()) object.mesh = meshes.extract(track.volume);
+      if (track.id == count.id && !mesh_unwanted())
+        object.mesh = meshes.extract(track.volume, track.T_model_object.inverse());
     objects.push_back(object);
   }
   return objects;
+}
+
+MatchingEnd matching_of(const MatchCounts& c) {
+  return {c.frames, c.found, c.no_keypoints, c.no_matches, c.no_agreement, c.not_verified};
 }
 
 void name_steering_object(const RobotDriver& driver, RunEnd& end) {

@@ -22,6 +22,8 @@ ExitCode exit_code_of(const RunEnd& end);
 // second Ctrl-C asked for none.
 std::vector<ObjectEnd> object_ends(const ObjectTracker& tracker, ModelMeshes& meshes);
 
+MatchingEnd matching_of(const MatchCounts& counts);
+
 // Which object the robot was, and since when that was known.
 void name_steering_object(const RobotDriver& driver, RunEnd& end);
 

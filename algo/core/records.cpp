@@ -32,6 +32,10 @@ const char* name_of(EventKind kind) {
       return "interrupted";
     case EventKind::kVolumeLeft:
       return "volume_left";
+    case EventKind::kRecognised:
+      return "recognised";
+    case EventKind::kUnknownObject:
+      return "unknown_object";
   }
   return "unknown";
 }

@@ -44,6 +44,8 @@ enum class EventKind : std::uint8_t {
   kVolumeFull,      // surface outside the object's volume was dropped
   kInterrupted,     // a: signal
   kVolumeLeft,      // scan mode, a: share of the surface in sight that lies outside of the volume
+  kRecognised,  // a model of the database took over; a: how well it fits, 0-1, b: agreeing 3-D SIFT matches
+  kUnknownObject,  // none of the models is it; a, b: of the best
 };
 const char* name_of(EventKind kind);
 

@@ -52,6 +52,15 @@ void MotionFilter::turns_at(double rate_rps, double sigma_rps) {
   axis_[5].rr = sigma_rps * sigma_rps;
 }
 
+void MotionFilter::rebase(const Pose& T_old_new) {
+  const Vec3 arm = R_reference_camera_ * (pose_.R * T_old_new.t);
+  const Vec3 more = cross(angular_velocity_rps(), arm);
+  for (int i = 0; i < 3; ++i) axis_[i].rate += more[i], before_[i].rate += more[i];
+  output_.velocity_mps += cross(output_.angular_velocity_rps, arm);
+  pose_ = pose_ * T_old_new;
+  corrected_ = corrected_ * T_old_new;
+}
+
 Pose MotionFilter::motion_over(double dt_s) const {
   const Mat3 R_camera_reference = R_reference_camera_.transposed();
   const Mat3 dR = rotation_from_vector(R_camera_reference * (angular_velocity_rps() * dt_s));

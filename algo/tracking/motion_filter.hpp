@@ -43,6 +43,9 @@ class MotionFilter {
   // How fast it turns about the reference's z axis until the next prediction's time, told by its wheels.
   void turns_at(double rate_rps, double sigma_rps);
 
+  // Another frame of the same body stands for it from now on: the rates are those of its origin.
+  void rebase(const Pose& T_old_new);
+
   // Moves the estimate on to time t_s.
   void predict(double t_s, const MotionNoise& noise);
 

@@ -90,6 +90,12 @@ struct Track {
   double last_good_t_s = 0;
   double yaw_unwrapped = 0;  // as published, floor frame
 
+  // Recognised: its pose and model are those of a stored model's frame, in which its own frame lies there.
+  int known_model = -1;  // of the database; -1: new
+  Pose T_model_object{};
+  int look_ups = 0;      // how often it was compared with the database
+  bool matched = false;  // recognition tracker: this frame's pose was found
+
   bool planar = true;     // rests on the floor: floor prior applies
   int off_floor_run = 0;  // frames in a row that contradict it
   int on_floor_run = 0;   // frames in a row that would allow it again

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,12 @@ struct CameraEnd {
   MeshView scene;                               // world frame; empty when the mesh was skipped
 };
 
+// Trackers that take their poses from 3-D SIFT matches: frames with a segment, and at which stage those
+// without a pose failed.
+struct MatchingEnd {
+  std::uint64_t frames = 0, found = 0, no_keypoints = 0, no_matches = 0, no_agreement = 0, not_verified = 0;
+};
+
 struct RunInfo {  // known at the start
   std::string version, source, mode, tracker, simd;
   std::string path_file;  // empty: no path
@@ -54,6 +61,7 @@ struct RunEnd {
   std::vector<ObjectEnd> objects;
   bool has_camera = false;  // scan mode
   CameraEnd camera;
+  std::optional<MatchingEnd> matching;
   int steering_object = 0;  // the object that was picked as the robot that obeys; 0: none was
   double path_begins_t_s =
       -1;  // what was driven before was the start motion; -1: the path began with the drive

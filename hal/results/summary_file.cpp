@@ -131,6 +131,15 @@ std::string format_summary(const RunEnd& end, const RunAnalysis& analysis, const
     json["scan"] = {{"pixels_aligned_mean", end.camera.pixels_aligned / frames},
                     {"bricks_fused_mean", end.camera.bricks_fused / frames}};
   }
+  if (end.matching) {
+    const MatchingEnd& m = *end.matching;
+    json["matching"] = {{"frames", m.frames},
+                        {"found", m.found},
+                        {"no_keypoints", m.no_keypoints},
+                        {"no_matches", m.no_matches},
+                        {"no_agreement", m.no_agreement},
+                        {"not_verified", m.not_verified}};
+  }
   // A source named in bytes that are no UTF-8 must not lose the run its summary.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

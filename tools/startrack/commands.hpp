@@ -21,6 +21,8 @@ void add_calibrate(CLI::App& app, int& exit_code);
 void add_cut(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 
+void add_models(CLI::App& app, int& exit_code);
+
 void add_replay(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 

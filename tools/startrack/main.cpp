@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   st::add_calibrate(app, exit_code);
   st::add_cut(app, exit_code);
   st::add_bench(app, exit_code);
+  st::add_models(app, exit_code);
   try {
     app.parse(argc, argv);
     return exit_code;

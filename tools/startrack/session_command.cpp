@@ -6,6 +6,7 @@
 
 #include "hal/recording/text.hpp"
 #include "tools/report/run_report.hpp"
+#include "tools/startrack/model_picture.hpp"
 #include "tools/startrack/run_table.hpp"
 
 namespace st {
@@ -15,11 +16,9 @@ struct Term {
   const char* name;
   bool LoopConfig::*used;
 };
-constexpr Term kTerms[] = {{"edges", &LoopConfig::use_contour},
-                           {"colour", &LoopConfig::use_color},
-                           {"floor", &LoopConfig::use_floor},
-                           {"motion", &LoopConfig::use_motion},
-                           {"odometry", &LoopConfig::use_wheels}};
+constexpr Term kTerms[] = {{"edges", &LoopConfig::use_contour},   {"colour", &LoopConfig::use_color},
+                           {"floor", &LoopConfig::use_floor},     {"motion", &LoopConfig::use_motion},
+                           {"odometry", &LoopConfig::use_wheels}, {"cleaning", &LoopConfig::use_cleaning}};
 
 void leave_out(LoopConfig& config, const std::string& name) {
   for (const Term& term : kTerms) {
@@ -27,8 +26,9 @@ void leave_out(LoopConfig& config, const std::string& name) {
     config.*term.used = false;
     return;
   }
-  throw Failure(ExitCode::kBadInput,
-                "--without " + name + ": no such term; there are edges, colour, floor, motion, odometry");
+  throw Failure(ExitCode::kBadInput, "--without " + name +
+                                         ": no such term; there are edges, colour, floor, motion, odometry, "
+                                         "cleaning");
 }
 
 // "x1,y1;x2,y2;..."
@@ -77,16 +77,23 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
               options.loop.tracker = TrackerKind::kFrameToFrame;
             } else if (name == "listing1") {
               options.loop.tracker = TrackerKind::kListing1;
+            } else if (name == "recognition") {
+              options.loop.tracker = TrackerKind::kRecognition;
+            } else if (name == "sift") {
+              options.loop.tracker = TrackerKind::kSiftMotion;
             } else {
-              throw Failure(
-                  ExitCode::kBadInput,
-                  "--tracker " + name + ": no such tracker; there are star, listing1, frame-to-frame");
+              throw Failure(ExitCode::kBadInput,
+                            "--tracker " + name +
+                                ": no such tracker; there are star, listing1, frame-to-frame, "
+                                "recognition, sift");
             }
             options.tracker_name = name;
           },
           "star (frame to updated model, all terms), listing1 (the paper as printed: closest-point ICP "
           "against the "
-          "updated model, no other term) or frame-to-frame (its first approach)")
+          "updated model, no other term) frame-to-frame (its first approach), recognition (each frame alone "
+          "against --models, pose from 3-D "
+          "SIFT matches) or sift (matches with the frame before)")
       ->type_name("NAME");
   command
       .add_option(
@@ -102,13 +109,29 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
           "leave pose terms out: edges (outline and free space), colour (the model's print), floor (height "
           "and "
           "upright of what rests on it), motion (the predicted pose as a prior), odometry (the turn that the "
-          "wheels tell); all of them leave projective ICP alone")
+          "wheels tell); these five leave projective ICP alone; cleaning: pixels at "
+          "steps in depth count, too")
       ->delimiter(',')
       ->type_name("TERM[,TERM]");
   command
       .add_option("--camera", options.source.camera_file,
                   "calibration instead of the recording's camera.toml")
       ->type_name("FILE");
+  command
+      .add_option("--models", options.known.file,
+                  "model database: what is in it is recognised, what is new is stored at the end")
+      ->type_name("DB");
+  command
+      .add_option_function<std::string>(
+          "--recognise",
+          [&options](const std::string& way) {
+            options.loop.recognition =
+                way == "sift" ? RecognitionWay::kMatchesAlone : RecognitionWay::kMatchesAndHeadings;
+          },
+          "where the pose of a known object may come from: sift (3-D SIFT matches alone, as in the paper) or "
+          "both (every heading is tried as well)")
+      ->check(CLI::IsMember({"sift", "both"}))
+      ->default_str("both");
   command
       .add_option("--volume", options.loop.volume_side,
                   "voxels a side of each volume (default: 128; scan: 256)")
@@ -142,7 +165,9 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
 }
 
 int run_and_report(const SessionOptions& options) {
-  const SessionResult result = run_session(options);
+  SessionOptions with_picture = options;
+  with_picture.known.picture = model_thumbnail;
+  const SessionResult result = run_session(with_picture);
   if (!result.trouble.empty()) std::fprintf(stderr, "startrack: %s\n", result.trouble.c_str());
   if (result.folder.empty()) return static_cast<int>(result.code);
   print_run_table(result.folder, options.path_file);
