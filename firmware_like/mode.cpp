@@ -18,7 +18,7 @@ class ObjectRun final : public ModeRun {
     if (config.tracker == TrackerKind::kRecognition && known.file.empty())
       throw Failure(ExitCode::kBadInput,
                     "--tracker recognition: needs --models DB, the objects that it shall recognise");
-    if (!known.file.empty()) library_.read(store_.emplace(known.file), config.volume_side);
+    if (!known.file.empty()) library_.read(store_.emplace(known.file), tracker_.volume_side());
     tracker_.know(library_);
   }
   const char* name() const override { return "object"; }
@@ -47,9 +47,9 @@ class ObjectRun final : public ModeRun {
  private:
   LoopConfig config_;
   KnownObjects known_;
+  ObjectTracker tracker_;
   std::optional<ModelStore> store_;
   ModelLibrary library_;
-  ObjectTracker tracker_;
   ModelMeshes meshes_;
 };
 

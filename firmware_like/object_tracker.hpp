@@ -74,6 +74,7 @@ class ObjectTracker {
   // For the end of a run.
   std::span<const Track> tracks() const { return tracks_; }
   const ObjectCounts& counts() const { return counts_; }
+  int volume_side() const { return config_.volume_side; }  // voxels
   const MatchCounts& match_counts() const { return match_counts_; }
   bool has_floor_frame() const { return has_floor_frame_; }
   const Pose& T_floor_camera() const { return T_floor_camera_; }
