@@ -48,13 +48,10 @@ MeasuredRobot parse_wheels_toml(std::string_view text, const std::string& name) 
     for (const Key& k : kKeys)
       if (key.str() == k.name) known = &k;
     if (known == nullptr) {
-      std::string names;
-      for (const Key& k : kKeys) {
-        if (!names.empty()) names += ", ";
-        names += k.name;
-      }
-      throw Failure(ExitCode::kBadInput,
-                    where + "unknown key '" + std::string(key.str()) + "'; known here: " + names);
+      std::string trouble = where;
+      trouble.append("unknown key '").append(key.str()).append("'; known here:");
+      for (const Key& k : kKeys) trouble.append(" ").append(k.name);
+      throw Failure(ExitCode::kBadInput, trouble);
     }
     const std::optional<double> value = node.value<double>();
     if (!value || !(*value >= known->least && *value <= known->most))
