@@ -34,21 +34,23 @@ void WayMatch::add(int id, double x_m, double y_m) {
   Entry* entry = nullptr;
   for (Entry& known : entries_)
     if (known.id == id) entry = &known;
-  if (entry == nullptr) {
-    if (!entries_.push_back({id, 0, 0, -1, 0, 0})) return;
-    entry = &entries_[entries_.size() - 1];
+  if (entry == nullptr && entries_.push_back({})) entry = &entries_[entries_.size() - 1];
+  if (entry == nullptr) {  // the one that has not been seen for longest gives way
+    entry = &entries_[0];
+    for (Entry& old : entries_)
+      if (old.window < entry->window) entry = &old;
   }
+  if (entry->id != id) *entry = {id, 0, 0, -1, 0, 0};
   if (closes_ && entry->window == window_) {
     const double x = x_m - entry->x_m, y = y_m - entry->y_m;
     const double seen_m = std::sqrt(x * x + y * y), told_m = std::sqrt(base_.x * base_.x + base_.y * base_.y);
     entry->told2 = kForget * entry->told2 + told_m * told_m;
     entry->misfit2 = kForget * entry->misfit2 + (seen_m - told_m) * (seen_m - told_m);
   }
-  if (closes_ || entry->window != window_) {
-    entry->window = closes_ ? window_ + 1 : window_;
-    entry->x_m = x_m;
-    entry->y_m = y_m;
-  }
+  if (!closes_) return;
+  entry->window = window_ + 1;  // the next one begins here, for whoever is seen
+  entry->x_m = x_m;
+  entry->y_m = y_m;
 }
 
 int WayMatch::best() const {

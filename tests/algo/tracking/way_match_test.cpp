@@ -46,6 +46,28 @@ TEST(WayMatch, FindsTheRobotAmongWhatStandsAndWalks) {
   CHECK(first > 45 && first < 80);  // a second and a half after it began to move
 }
 
+TEST(WayMatch, OneThatIsSeenFromTheMiddleOfAWindowOnIsMeasuredFromItsNextBeginning) {
+  for (int k = 0; k < 50; ++k) {
+    robot.drive(0.3, 0);
+    match.begin_frame(robot.wheels);
+    if (k >= 22) match.add(1, robot.x(0), robot.y(0));  // one whole window, half a second, of 0.15 m
+  }
+  LONGS_EQUAL(1, match.best());
+}
+
+TEST(WayMatch, ManyThatCameAndWentLeaveRoom) {
+  for (int id = 1; id <= 40; ++id) {
+    match.begin_frame({true, 0, 0, 1.0});
+    match.add(id, id, id);
+  }
+  for (int k = 0; k < 60; ++k) {
+    robot.drive(0.2, 0);
+    match.begin_frame(robot.wheels);
+    match.add(41, robot.x(0), robot.y(0));
+  }
+  LONGS_EQUAL(41, match.best());
+}
+
 TEST(WayMatch, TwoThatGoAlongAreNone) {
   for (int k = 0; k < 100; ++k) {
     robot.drive(0.2, 0);
