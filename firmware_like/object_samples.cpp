@@ -60,8 +60,10 @@ void add_model_error(const Vec3& up, double distance_m, double (&covariance)[36]
 void ObjectTracker::see(SeenObjects& objects) const {
   for (const Track& track : tracks_) {
     if (track.id == 0 || !has_floor_frame_) continue;
-    const Pose T = T_floor_camera_ * track.T_camera_object;
-    const Vec3 middle = track.bounds.empty() ? Vec3{} : track.bounds.centre();
+    // In the frame that is published: a recognised object keeps the one that it had.
+    const Pose T = T_floor_camera_ * track.T_camera_object * track.T_model_object;
+    const Vec3 middle =
+        track.T_model_object.inverse() * (track.bounds.empty() ? Vec3{} : track.bounds.centre());
     SeenObject object;
     object.id = track.id;
     object.good = track.phase == Track::Phase::kTracked && track.state == TrackState::kGood;
