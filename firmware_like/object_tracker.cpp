@@ -321,11 +321,8 @@ void ObjectTracker::judge_one(Track& track) {
   if (!track.planar) return_to_floor(track);
   track.yaw_source = yaw_source_of(track.aligned, support_.up);
   judge_wheels(track);
-  if (track.aligned.color.used > 0)
-    track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance, track.aligned.color_rest,
-                         frame_.color_lag_s);
-  else
-    track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance);
+  track.motion.correct(track.aligned.T_camera_object, track.aligned.covariance, track.aligned.color_rest,
+                       frame_.color_lag_s);
   track.T_camera_object = track.aligned.T_camera_object;
   track.state = TrackState::kGood;
   track.poor_run = 0;

@@ -148,6 +148,9 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
   std::size_t outline_count = 0, contour_count = 0;
   if (in.terms.contour) outline_count = find_outline(scratch.view, in.camera, scratch.outline);
 
+  const Pose T_view_inverse = in.view.T_camera_object.inverse();
+  const Vec3 pivot_then = in.color_time.motion * in.pivot;
+  bool collected = false;
   const bool sees_color = in.color != nullptr && !in.color->empty();
   PoseTie own_turn;
   own_turn.R_frame_camera = in.color_time.tie.R_frame_camera;
@@ -162,23 +165,21 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
     const ColorTermOptions color_options;
     const bool use_color = sees_color && level.color;
 
-    const Pose T_view_inverse = in.view.T_camera_object.inverse();
     const Pose D0 = T * T_view_inverse;
     if (in.terms.contour)
       contour_count = find_contour({scratch.outline, outline_count}, in.camera, in.depth_z, D0,
                                    contour_options, scratch.contour);
-    const Vec3 pivot_then = in.color_time.motion * in.pivot;
     const auto look = [&] {
       return ColorLook{scratch.color_points,
                        scratch.color_points.prefix(level.points / static_cast<std::size_t>(in.point_stride)),
                        *in.color, pose_then(in.color_time, in.prior.mean, T, in.pivot) * T_view_inverse};
     };
-    if (use_color) {
+    if (use_color && !collected)
       collect_color_points(scratch.view, in.camera, in.depth_z, D0, color_options,
                            PointTable::kMost / static_cast<std::size_t>(in.point_stride),
                            scratch.color_points);
-      result.gain = fit_color_gain(look());
-    }
+    collected = collected || use_color;
+    if (use_color) result.gain = fit_color_gain(look());
 
     for (int i = 0; i < level.iterations; ++i) {
       const Pose D = T * T_view_inverse;

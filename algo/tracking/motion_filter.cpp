@@ -140,10 +140,6 @@ MotionPrior MotionFilter::prior() const {
 
 void MotionFilter::covariance(double (&out)[36]) const { in_camera_axes(false, out); }
 
-void MotionFilter::correct(const Pose& T_camera_object, const double (&covariance)[36]) {
-  correct(T_camera_object, covariance, TieRest{}, 0);  // of the same time: nothing is left open
-}
-
 // The rate is alpha times the value's deviation, plus beta times the rest of the colour image's, plus what
 // neither tells; value and rest are independent before the frame, and no more so after it.
 void MotionFilter::correct(const Pose& T_camera_object, const double (&covariance)[36], const TieRest& rest,
@@ -162,7 +158,8 @@ void MotionFilter::correct(const Pose& T_camera_object, const double (&covarianc
     const double alpha = a.pr / a.pp;
     const Then t = then(i, lag_s);
     const double share = t.with_value / a.pp, open = t.variance - share * t.with_value;
-    const bool blind = !(open > kLeastOpen * t.variance);  // the colour image is of the same time
+    // No colour image, or one of the same time.
+    const bool blind = !rest.told || !(open > kLeastOpen * t.variance);
     const double beta = blind ? 0.0 : (t.with_rate - share * a.pr) / open;
     const double joint = rest.slope[i] * posterior;
     const double rest_variance = blind ? 0.0 : rest.variance[i] + rest.slope[i] * joint;

@@ -54,10 +54,9 @@ class MotionFilter {
 
   // Takes the pose found by an alignment that already used prior(): its covariance (camera axes, about the
   // origin) is the posterior, so the rates follow by conditioning (no second use of the prior).
-  void correct(const Pose& T_camera_object, const double (&covariance)[36]);
-  // The same where a colour image taken lag_s before or after said something beyond that.
-  void correct(const Pose& T_camera_object, const double (&covariance)[36], const TieRest& rest,
-               double lag_s);
+  // `rest`: what a colour image taken lag_s after (before: negative) said beyond that.
+  void correct(const Pose& T_camera_object, const double (&covariance)[36], const TieRest& rest = {},
+               double lag_s = 0);
 
   // Keeps the predicted pose and lets the rates fade: an object that nobody sees is not followed for long.
   void coast(double fade);

@@ -41,6 +41,7 @@ TieRest add_tied(const NormalEquations& eq, const PoseTie& tie, NormalEquations&
       inner[kPose * i + j] = S[i] * A.H[kN * i + j] * S[j] + (i == j ? 1.0 : 0.0);
   TieRest rest;
   if (!invert_spd(inner, inverse, kPose)) return rest;
+  rest.told = true;
 
   double gain[kPose * kPose];  // covariance of e once the pose sought is known
   for (int i = 0; i < kPose; ++i)

@@ -18,6 +18,7 @@ struct PoseTie {
 // What the equations say of e, per axis: its mean if the pose sought is the one they were taken at, how that
 // changes with an error of it, and the variance once that is known.
 struct TieRest {
+  bool told = false;  // false: there were no such equations
   double mean[6]{}, slope[6]{}, variance[6]{};
 };
 
