@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "algo/core/scalar_math.hpp"
+#include "algo/tracking/align_beside.hpp"
 #include "algo/tracking/closest_point.hpp"
 #include "algo/tracking/frame_view.hpp"
 #include "algo/tracking/judge.hpp"
@@ -20,15 +21,15 @@ constexpr double kDegree = kPi / 180;
 struct Aligner {
   const char* name;
   enum Kind { kModelView, kFrameBefore, kCloud } kind;
-  bool color;
+  bool color, beside;  // takes part; headings beside the predicted one are looked at
   AlignTerms terms;
 };
 constexpr Aligner kAligners[] = {
-    {"frame to frame", Aligner::kFrameBefore, true, {}},
-    {"closest point (Listing 1)", Aligner::kCloud, false, {}},
-    {"projective ICP alone", Aligner::kModelView, false, {false, false, false}},
-    {"full, no motion prior", Aligner::kModelView, true, {true, true, false}},
-    {"full estimator", Aligner::kModelView, true, {}},
+    {"frame to frame", Aligner::kFrameBefore, true, false, {}},
+    {"closest point (Listing 1)", Aligner::kCloud, false, false, {}},
+    {"projective ICP alone", Aligner::kModelView, false, false, {false, false, false}},
+    {"full, no motion prior", Aligner::kModelView, true, true, {true, true, false}},
+    {"full estimator", Aligner::kModelView, true, true, {}},
 };
 constexpr std::size_t kKinds = std::size(kAligners);
 
@@ -126,8 +127,10 @@ class Jumps {
     if (aligner.color) in.color = &frame.colors;
     in.color_time.tie.R_frame_camera = views_.support().R_camera_floor.transposed();
     in.largest_start_error_m = kSettledTrack_m;
-    const AlignResult result =
+    AlignResult result =
         aligner.kind == Aligner::kCloud ? align_closest_point(in, cloud_, aligning_) : align(in, aligning_);
+    Mat3 turn;
+    if (aligner.beside) align_beside(in, habit, views_.support().up, aligning_, result, turn);
     const Pose D = result.T_camera_object * in.view.T_camera_object.inverse();
     const Agreement agreement = compare(in.view, in.camera, in.depth_z, D, result.depth);
     if (score == nullptr) {

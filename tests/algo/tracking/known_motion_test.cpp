@@ -6,6 +6,7 @@
 
 #include "algo/core/scalar_math.hpp"
 #include "algo/tracking/align.hpp"
+#include "algo/tracking/align_beside.hpp"
 #include "algo/tracking/observe.hpp"
 #include "tests/algo/tracking/seen_colors.hpp"
 #include "tests/algo/volume/analytic_view.hpp"
@@ -122,6 +123,32 @@ TEST(KnownMotion, OnlyThePrintShowsTheTurnOfARoundBody) {
   // And it says so: the turn about up is far less sure.
   CHECK(turn_sigma_rad(without.data_information, up) > 5 * turn_sigma_rad(with.data_information, up));
   DOUBLES_EQUAL(0, position_error(T, without.T_camera_object), 0.003);
+}
+
+TEST(KnownMotion, ATurnBeyondTheReachOfColourIsFoundBeside) {
+  const Disc disc(0.17, 0.04);
+  const ModelView view = learn(disc, looking_at(1.3, 0.0, 0.6));
+  const Vec3 up = T0.R.col(2);
+  const auto tight = [&](AlignInput in) {  // it stood, and is expected to stand
+    for (int i = 3; i < 6; ++i) in.prior.information[7 * i] = 1 / (0.005 * 0.005);
+    in.color_time.tie.R_frame_camera = T0.R.transposed();
+    return in;
+  };
+  Habit habit;
+  for (int i = 0; i < 20; ++i) habit.learn(align(tight(look(disc, view, T0)), scratch), {});
+  for (const double turn : {0.0, 1 * kDegree, 9 * kDegree, -10 * kDegree}) {
+    const Pose T = moved_about(T0, {{}, up * turn}, T0.t);
+    const AlignInput in = tight(look(disc, view, T));
+    AlignResult result = align(in, scratch);
+    const double alone = turn_error(T, result.T_camera_object);
+    Mat3 turned;
+    const bool beside = align_beside(in, habit, up, scratch, result, turned);
+    CHECK_EQUAL(std::fabs(turn) > 5 * kDegree, beside);
+    DOUBLES_EQUAL(0, turn_error(T, result.T_camera_object), 1.0 * kDegree);
+    if (!beside) continue;
+    CHECK(alone > 3 * kDegree);
+    DOUBLES_EQUAL(turn, dot(rotation_to_vector(turned), up), kDegree);
+  }
 }
 
 TEST(KnownMotion, TheColourCamerasExposureDoesNotMatter) {
