@@ -230,25 +230,39 @@ int Recognition::refine() {
   return 8;
 }
 
+namespace {
+
+constexpr float kExplained = 0.88f;  // least share of the surface, of a sure answer
+constexpr int kColoured = 60;        // points with a colour, from which on the print counts
+
+// Two models that the subject fits as well, print and all, are one thing that is stored twice: they do not
+// count against each other.
+bool is_twin(const VolumeFit& fit) {
+  constexpr float kSamePrint = 0.85f;
+  return fit.explained >= kExplained && fit.colored >= kColoured && fit.likeness >= kSamePrint;
+}
+
+}  // namespace
+
 // What this model came to, beside the others.
 void Recognition::conclude() {
   const Candidate& candidate = verified();
   const VolumeFit* best = &kept_[0];
   for (const VolumeFit& fit : kept_)
     if (fit.score() > best->score()) best = &fit;
+  const bool twins = is_twin(*best) && is_twin(best_.fit);
   if (best->score() <= best_.fit.score()) {
-    if (best->score() > best_.second_score) best_.second_score = best->score();
+    if (!twins && best->score() > best_.second_score) best_.second_score = best->score();
     return;
   }
-  const float second = best_.fit.score();
+  const float second = twins ? best_.second_score : best_.fit.score();
   best_ = {candidate.model, *best, candidate.fit.T_b_a, candidate.matches, candidate.fit.inliers, second, 0};
   for (const VolumeFit& fit : kept_)
     if (!same_heading(fit, *best) && fit.score() > best_.other_heading) best_.other_heading = fit.score();
 }
 
 bool is_sure_model(const Recognised& r) {
-  constexpr float kExplained = 0.88f, kLikeness = 0.35f, kAhead = 0.02f;
-  constexpr int kColoured = 60;
+  constexpr float kLikeness = 0.35f, kAhead = 0.02f;
   if (r.model < 0 || r.fit.explained < kExplained) return false;
   if (r.fit.colored >= kColoured && r.fit.likeness < kLikeness) return false;
   return r.fit.score() > r.second_score + kAhead;

@@ -29,7 +29,7 @@ struct Recognised {
   VolumeFit fit;                  // T_model_seen and how well it fits
   Pose T_model_seen_matched;      // as the matches alone have it; where `agreeing` is not 0
   int matches = 0, agreeing = 0;  // 3-D SIFT
-  float second_score = 0;         // of the best other model
+  float second_score = 0;         // of the best other model that is not the same thing, stored twice
   float other_heading = 0;        // of this model turned by more than kSameHeading_rad
 };
 

@@ -28,12 +28,12 @@ std::uint32_t print_at(const Vec3& p) {
 
 // A volume of a thing that was seen from these sides, and the thing as a known model.
 struct Thing {
-  Thing(const Solid& solid, const std::vector<double>& yaws) : bench(128) {
+  Thing(const Solid& solid, const std::vector<double>& yaws, bool printed = true) : bench(128) {
     bench.volume.reset(0.004f, 0.016f, {0, 0, 0});
     std::mt19937 random(9);
     Rendering how;
     how.noise = 0.3;
-    how.paint = print_at;
+    if (printed) how.paint = print_at;
     for (const double yaw : yaws) bench.fuse(render(solid, looking_at(1.1, yaw, kPitch), how, random));
   }
   KnownModel known() {
@@ -106,6 +106,22 @@ TEST(Recognition, KnowsWhichOfTwoItIsAndHowItStands) {
     CHECK_TRUE(rotation_angle(answer->best.fit.T_model_seen.R) < 0.06);
     CHECK_TRUE(answer->frames <= 35);
   }
+}
+
+// One thing that came into the database twice is known all the same; two that share no more than their shape
+// are not told apart, and neither is given out.
+TEST(Recognition, ATwinInTheDatabaseDoesNotMakeItUnknown) {
+  Thing disc(Disc(0.15, 0.05), all_round(0)), again(Disc(0.15, 0.05), all_round(0.1));
+  const KnownModel models[] = {disc.known(), again.known()};
+  const Thing seen(Disc(0.15, 0.05), {2.1, 2.2, 2.3});
+  CHECK_TRUE(is_sure_model(recognise(models, seen, 2.2).best));
+}
+
+TEST(Recognition, TwoPlainThingsOfOneShapeAreNotToldApart) {
+  Thing disc(Disc(0.15, 0.05), all_round(0), false), again(Disc(0.15, 0.05), all_round(0.1), false);
+  const KnownModel models[] = {disc.known(), again.known()};
+  const Thing seen(Disc(0.15, 0.05), {2.1, 2.2, 2.3}, false);
+  CHECK_FALSE(is_sure_model(recognise(models, seen, 2.2).best));
 }
 
 TEST(Recognition, WhatIsNotThereIsUnknown) {
