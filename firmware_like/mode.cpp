@@ -36,10 +36,12 @@ class ObjectRun final : public ModeRun {
     end.has_floor_frame = tracker_.has_floor_frame();
     end.T_floor_camera = tracker_.T_floor_camera();
     end.objects = object_ends(tracker_, meshes_);
-    const bool by_matches = tracks_by_matches(config_.tracker);
-    if (by_matches) end.matching = matching_of(tracker_.match_counts());
+    if (tracks_by_matches(config_.tracker)) end.matching = matching_of(tracker_.match_counts());
+  }
+  void keep(RunEnd& end) override {
     if (!store_) return;
-    const KeepOptions keep{end.info.source, end.info.version, known_.picture, !by_matches};
+    const KeepOptions keep{end.info.source, end.info.version, known_.picture,
+                           !tracks_by_matches(config_.tracker)};
     for (const std::string& line : keep_models(tracker_, library_, *store_, keep, end.objects))
       std::fprintf(stderr, "startrack: %s\n", line.c_str());
   }

@@ -167,10 +167,17 @@ SessionResult run_session(const SessionOptions& options) {
   end.planned_bytes = plan.bytes();
   end.deadline_misses = budget.counts().deadline_misses;
   mode->describe(end);
+  std::optional<ExitCode> not_kept;  // the run's own files come all the same
+  try {
+    mode->keep(end);
+  } catch (const Failure& failure) {
+    not_kept = failure.code();
+    result.trouble = failure.what();
+  }
   if (driver) name_steering_object(*driver, end);
   end.peak_rss_bytes = peak_rss_bytes();
   finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});
-  result.code = exit_code_of(end);
+  result.code = not_kept ? *not_kept : exit_code_of(end);
   if (why == LoopEnd::kSourceFault) result.trouble = info.name + ": " + source->fault();
   if (why == LoopEnd::kRobotFault)
     result.trouble = "robot " + options.robot.port + ": " + name_of(driver->fault()) + ": " +

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "hal/models/model_store.hpp"
+#include "hal/models/sqlite.hpp"
 #include "tests/replay/driven_circle.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/support/program.hpp"
@@ -46,6 +48,8 @@ TEST(RecognitionRun, TheSecondRunKnowsWhatTheFirstMetAndTheDatabaseHoldsItOnce) 
     LONGS_EQUAL(0, replay(name, {"--models", database}).code);
     const Json object = summary_of(name)["objects"][0];
     CHECK_EQUAL(first["model_id"].get<std::string>(), object["model_id"].get<std::string>());
+    STRCMP_EQUAL("database", object["model_source"].get<std::string>().c_str());
+    CHECK(events_of(name).find(",recognised,1,") != std::string::npos);  // in the loop, not at the end
     STRCMP_EQUAL("object-1", object["name"].get<std::string>().c_str());
     LONGS_EQUAL(2, lines_of(list(database)));  // heading and one model
     const Json T = object["T_model_object"];
@@ -61,9 +65,23 @@ TEST(RecognitionRun, ARunWithADatabaseIsRepeatableAndKeepsOffTheHeap) {
   replay("a", {"--models", database});
   replay("b", {"--models", folder / "copy.db"});
   CHECK(summary_of("a")["deterministic_hash"] == summary_of("b")["deterministic_hash"]);
+  CHECK(events_of("a").find(",recognised,") != std::string::npos);
   if (kSanitized) return;
   LONGS_EQUAL(0, summary_of("a")["memory"]["heap_calls_after_seal"].get<int>());
   LONGS_EQUAL(0, summary_of("a")["memory"]["page_faults_after_seal"].get<int>());
+}
+
+// The database cannot be written: the run's own files are complete all the same.
+TEST(RecognitionRun, ADatabaseThatRefusesAtTheEndCostsTheRunNothing) {
+  const std::string database = folder / "models.db";
+  { const ModelStore made(database); }
+  Database held(database, Database::Access::kCreate);
+  held.run("CREATE TRIGGER no_more BEFORE INSERT ON model BEGIN SELECT RAISE(ABORT, 'no more'); END");
+  const Said said = replay("run", {"--models", database});
+  LONGS_EQUAL(2, said.code);
+  STRCMP_CONTAINS("models.db", said.err.c_str());
+  for (const char* name : {"summary.json", "object-1.ply", "object-1.tum"})
+    CHECK_TEXT(!content((folder / "run") + "/" + name).empty(), name);
 }
 
 TEST(RecognitionRun, TheRecognitionTrackerCountsWhereItFails) {
