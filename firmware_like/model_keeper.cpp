@@ -60,7 +60,7 @@ class Keeper {
     if (same.model >= 0) {  // known after all, from its sides that came into sight later
       const auto known = static_cast<std::size_t>(same.model);
       name(object, library_.entry(known));
-      object.T_model_object = same.fit.T_model_seen;
+      if (is_sure_heading(same)) object.T_model_object = same.fit.T_model_seen;
       said_.push_back("object " + std::to_string(object.id) + " is the stored " + library_.entry(known).name);
       return;
     }
@@ -141,7 +141,9 @@ Recognised find_double(std::span<const KnownModel> models, const Volume& volume)
   recognition.start(models, kNone, subject, RecognitionWay::kMatchesAndHeadings);
   while (!recognition.advance(Recognition::kUnitsPerFrame)) {
   }
-  return is_sure_model(recognition.best()) ? recognition.best() : Recognised{};
+  Recognised best = recognition.best();
+  best.second_score = 0;  // whichever it is, it is stored already
+  return is_sure_model(best) ? best : Recognised{};
 }
 
 }  // namespace st

@@ -64,14 +64,13 @@ bool ObjectTracker::match_database(Track& track) {
   return true;
 }
 
-// The motion from the frame before; where that fails the turn since then is not known, and the pose is not
-// given out.
+// The motion since the last frame that was matched; where that fails the pose is not given out.
 bool ObjectTracker::match_frame_before(Track& track, std::size_t k) {
   constexpr float kToleranceVoxels = 2.5f;
   SeenFeatures& before = seen_features_[k];
   const FeatureSet now = recognition_.describe(track.volume);
   const FeatureSet then{before.features.first(before.used), before.descriptors.first(before.used)};
-  const bool first = before.used == 0 || track.good_poses == 0;
+  const bool first = track.good_poses == 0;
   UprightFit fit;
   int matches = 0;
   if (!first) fit = recognition_.match(now, then, kToleranceVoxels, matches);
@@ -83,17 +82,14 @@ bool ObjectTracker::match_frame_before(Track& track, std::size_t k) {
     else
       ++match_counts_.no_agreement;
   }
+  if (!first && !fit.found) return false;
   before.used = now.features.size();
   for (std::size_t i = 0; i < before.used; ++i) {
     before.features[i] = now.features[i];
     before.descriptors[i] = now.descriptors[i];
   }
-  if (first) {
-    track.T_model_object = Pose{};
-    return true;
-  }
-  if (fit.found) track.T_model_object = fit.T_b_a.inverse() * track.T_model_object;
-  return fit.found;
+  track.T_model_object = first ? Pose{} : fit.T_b_a.inverse() * track.T_model_object;
+  return true;
 }
 
 // There is nothing to judge: the matches agree, or there is no pose.

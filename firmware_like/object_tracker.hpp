@@ -196,7 +196,7 @@ class ObjectTracker {
   std::size_t recognised_track_ = 0;
   int recognised_id_ = 0;
   static constexpr int kLeastMatches = 3;
-  struct SeenFeatures {  // of the frame before
+  struct SeenFeatures {  // of the last frame that was matched
     std::span<Feature> features;
     std::span<Descriptor> descriptors;
     std::size_t used = 0;
