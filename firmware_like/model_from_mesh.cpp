@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kSide = 128;
 constexpr double kSmallest_m = 0.01, kLargest_m = 3.0, kMargin = 1.3;
+constexpr double kAboveFloor_m = 0.03;  // what a scan leaves open
 
 }  // namespace
 
@@ -25,6 +26,9 @@ OwnedModel model_from_mesh(const MeshView& mesh, const std::string& name) {
     throw Failure(ExitCode::kBadInput,
                   name + ": is " + std::to_string(extent) +
                       " m long; an object is 0.01 to 3 m (use --scale 0.001 for millimetres)");
+  if (const double low = traits.bounds.low.z; !(low > -kAboveFloor_m && low < kAboveFloor_m))
+    throw Failure(ExitCode::kBadInput, name + ": its lowest point is at z = " + std::to_string(low) +
+                                           " m; an object stands on z = 0 with z up: shift or turn the mesh");
   const auto voxel_m = static_cast<float>(std::max(kLeastBox_m, kMargin * extent) / kSide);
   Volume volume;
   const HeapMemory memory([&](Bump& bump) { volume.bind(bump, kSide); });

@@ -1,5 +1,6 @@
 #include "hal/models/ply_import.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -156,17 +157,19 @@ class PlyReader {
 
   static void set(MeshVertex& vertex, const std::string& name, double number, double scale) {
     const auto coordinate = static_cast<float>(number);
-    const auto level = static_cast<std::uint8_t>(number < 0 ? 0 : number > 255 ? 255 : number);
+    const auto level = [&] {  // of a number that may be none
+      return static_cast<std::uint8_t>(number > 0 ? std::min(number, 255.0) : 0.0);
+    };
     if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z')
       vertex.position[name[0] - 'x'] = static_cast<float>(number * scale);
     else if (name.size() == 2 && name[0] == 'n' && name[1] >= 'x' && name[1] <= 'z')
       vertex.normal[name[1] - 'x'] = coordinate;
     else if (name == "red")
-      vertex.r = level;
+      vertex.r = level();
     else if (name == "green")
-      vertex.g = level;
+      vertex.g = level();
     else if (name == "blue")
-      vertex.b = level;
+      vertex.b = level();
   }
 
   // Polygons become fans.

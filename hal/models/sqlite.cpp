@@ -33,9 +33,8 @@ std::string advice(int code) {
 }  // namespace
 
 Database::Database(const std::string& path, Access access) : path_(path) {
-  const int flags = access == Access::kRead    ? SQLITE_OPEN_READONLY
-                    : access == Access::kWrite ? SQLITE_OPEN_READWRITE
-                                               : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  const int flags =
+      access == Access::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   if (sqlite3_open_v2(path.c_str(), &handle_, flags, nullptr) != SQLITE_OK) {
     const std::string what = advice(SQLITE_CANTOPEN);
     sqlite3_close(handle_);

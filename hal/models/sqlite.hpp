@@ -13,7 +13,7 @@ namespace st {
 
 class Database {
  public:
-  enum class Access { kRead, kWrite, kCreate };
+  enum class Access { kRead, kCreate };
   // Throws Failure (kBadInput) when the file cannot be opened. Waits up to five seconds for another program.
   Database(const std::string& path, Access access);
   ~Database();

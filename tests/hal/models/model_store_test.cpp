@@ -130,7 +130,7 @@ TEST(ModelStore, RefusesForeignFilesAndLeavesThemAlone) {
   refused(folder / "foreign.db", "another program");
   { ModelStore store(folder / "newer.db"); }
   {
-    Database newer(folder / "newer.db", Database::Access::kWrite);
+    Database newer(folder / "newer.db", Database::Access::kCreate);
     newer.run("PRAGMA user_version=99");
   }
   refused(folder / "newer.db", "newer startrack");
