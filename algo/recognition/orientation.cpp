@@ -6,6 +6,15 @@
 namespace st {
 namespace {
 
+// Central differences at a voxel; zero on the border.
+Vec3f gradient_at(const Grid& level, int x, int y, int z) {
+  const int last = level.side - 1;
+  if (x < 1 || y < 1 || z < 1 || x >= last || y >= last || z >= last) return {};
+  const auto n = static_cast<std::size_t>(level.side);
+  const float* const at = &level.values[level.index(x, y, z)];
+  return Vec3f{at[1] - *(at - 1), at[n] - *(at - n), at[n * n] - *(at - n * n)} * 0.5f;
+}
+
 constexpr int kAzimuths = 16, kElevations = 8, kTilts = 36;
 constexpr float kPif = static_cast<float>(kPi);
 constexpr float kWindowSigmas = 1.5f, kWindowRadius = 2.0f;  // of the window; of it in its sigmas
@@ -174,14 +183,6 @@ int add_tilts(const Grid& level, const Vec3f& voxel, float sigma, const Vec3f& x
 }
 
 }  // namespace
-
-Vec3f gradient_at(const Grid& level, int x, int y, int z) {
-  const int last = level.side - 1;
-  if (x < 1 || y < 1 || z < 1 || x >= last || y >= last || z >= last) return {};
-  const auto n = static_cast<std::size_t>(level.side);
-  const float* const at = &level.values[level.index(x, y, z)];
-  return Vec3f{at[1] - *(at - 1), at[n] - *(at - n), at[n * n] - *(at - n * n)} * 0.5f;
-}
 
 int find_orientations(const Grid& level, const Vec3f& voxel, float sigma, Mat3f (&frames)[kMaxOrientations]) {
   Direction directions[kMaxDirections]{};

@@ -8,9 +8,6 @@ namespace st {
 
 inline constexpr int kMaxOrientations = 4;
 
-// Central differences at a voxel; zero on the border.
-Vec3f gradient_at(const Grid& level, int x, int y, int z);
-
 // level: the Gaussian level of the keypoint; voxel, sigma: in its voxels. Column 0 of a frame is the dominant
 // direction, column 1 the strongest one across it; p_level = R p_keypoint. Returns how many there are; none
 // where the neighbourhood is flat, or no direction across the dominant one stands out.

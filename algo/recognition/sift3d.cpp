@@ -20,20 +20,6 @@ void Sift3d::start(const KeypointLimits& limits) {
   stage_ = Stage::kBlur;
 }
 
-int Sift3d::steps_left_at_most() const {
-  const int blurs = space_.octaves * kGaussians * 3, searches = space_.octaves * kScalesPerOctave;
-  switch (stage_) {
-    case Stage::kBlur:
-      return blurs - (octave_ * kGaussians + level_) * 3 - axis_ + searches + kMaxKeypoints;
-    case Stage::kExtrema:
-      return searches - octave_ * kScalesPerOctave - level_ + 1 + kMaxKeypoints;
-    case Stage::kDescribe:
-      return static_cast<int>(keypoints_to_describe() - next_keypoint_);
-    default:
-      return 0;
-  }
-}
-
 std::size_t Sift3d::keypoints_to_describe() const {
   const auto most = static_cast<std::size_t>(limits_.most_described);
   return keypoints_.size() < most ? keypoints_.size() : most;

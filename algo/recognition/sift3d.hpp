@@ -39,7 +39,6 @@ class Sift3d {
   // when it was the last.
   bool step();
   Stage stage() const { return stage_; }
-  int steps_left_at_most() const;
 
   // Valid once done, until the next start().
   FeatureSet features() const { return {features_.first(used_), descriptors_.first(used_)}; }

@@ -86,15 +86,10 @@ UprightFit fit_upright(const FeatureSet& a, const FeatureSet& b, const Matches& 
   Motion refined = kept;
   fit(
       pairs, [&](const Pair& p) { return norm(kept(p.a) - p.b) < tolerance; }, refined);
-  double sum = 0;
   best.inliers = 0;
-  for (const Pair& p : pairs) {
-    const double off = norm(refined(p.a) - p.b);
-    if (off < tolerance) sum += off * off, ++best.inliers;
-  }
+  for (const Pair& p : pairs) best.inliers += norm(refined(p.a) - p.b) < tolerance ? 1 : 0;
   if (best.inliers < kLeastInliers) return {};
   best.found = true;
-  best.rms_m = static_cast<float>(std::sqrt(sum / best.inliers));
   best.T_b_a.R = {{refined.c, -refined.s, 0, refined.s, refined.c, 0, 0, 0, 1}};
   best.T_b_a.t = refined.t;
   return best;

@@ -11,7 +11,6 @@ struct UprightFit {
   bool found = false;
   Pose T_b_a;       // p_b = T_b_a p_a; a turn about z and a shift
   int inliers = 0;  // matches that agree
-  float rms_m = 0;  // of these
 };
 
 // Most matches that are paired up: the nearest ones; 1,128 pairs.

@@ -116,20 +116,17 @@ VolumeFit fit_to_volume(const Volume& model, std::span<const SurfacePoint> seen,
   const PoseF T = to_float(fit.T_model_seen);
   Correlation print;
   int on_surface = 0;
-  double squares = 0;
   for (const SurfacePoint& s : seen) {
     const Vec3f q = T * s.p;
     const SdfSample at = sample(model, q);
     if (!at.valid || std::fabs(at.sdf_m) > kFitTolerance_m) continue;
     ++on_surface;
-    squares += static_cast<double>(at.sdf_m * at.sdf_m);
     const ColorSample color = sample_color(model, q);
     if (color.valid && s.luminance >= 0)
       print.add(static_cast<double>(luminance_of(color)), static_cast<double>(s.luminance));
   }
   if (on_surface == 0) return fit;
   fit.explained = static_cast<float>(on_surface) / static_cast<float>(seen.size());
-  fit.rms_m = static_cast<float>(std::sqrt(squares / on_surface));
   fit.colored = static_cast<int>(print.n);
   fit.likeness = print.n > 2 ? static_cast<float>(print.value()) : 0.0f;
   return fit;

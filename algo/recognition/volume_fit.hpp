@@ -24,7 +24,6 @@ std::size_t sample_surface(const Volume& volume, std::span<SurfacePoint> out, st
 struct VolumeFit {
   Pose T_model_seen;
   float explained = 0;  // share of the points within kFitTolerance_m of the model's surface
-  float rms_m = 0;      // of those
   float likeness = 0;   // correlation of the luminances, -1 to 1: the same in any light
   int colored = 0;      // points that it was taken over
   float score() const;  // 0-1: explained, less where the print differs

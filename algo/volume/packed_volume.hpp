@@ -34,7 +34,7 @@ std::size_t count_packed(const Volume& volume);
 PackedVolume pack(const Volume& volume, std::span<PackedBrick> bricks);
 
 // Replaces the content of `volume`, whose number of voxels a side may be another: then the bricks keep their
-// place about the middle. False, and an empty volume, when some brick falls outside. No heap; some 2 ms.
+// place about the middle. False, and an empty volume, when some brick falls outside. No heap.
 bool unpack(const PackedVolume& packed, Volume& volume);
 
 }  // namespace st

@@ -172,7 +172,9 @@ void add_models(CLI::App& app, int& exit_code) {
   model(add(*models, "delete", "Forget a model", "delete object-3", a, erase, exit_code));
   c = add(*models, "merge", "Take over what another database knows", "merge friday.db --models lab.db", a,
           merge, exit_code);
-  c->add_option("OTHER", a->file, "the other database; it stays as it is")->required();
+  c->add_option("OTHER", a->file,
+                "the other database; it stays as it is, but for a migration where it is of an older kind")
+      ->required();
   c = models->add_subcommand("keypoints", "3-D SIFT keypoints of a raw volume, as CSV");
   c->footer("Example:\n  startrack models keypoints volume.raw --descriptors volume.desc");
   c->add_option("VOLUME", a->file,
