@@ -22,11 +22,31 @@ enum class DepthEncoding {
   kScaled16,  // TUM PNG: z = stored / depth_scale, 0 and 65535 are no reading
 };
 
+// The sensor's own smooth error over the image: nodes in a grid from corner pixel to corner pixel, bilinear
+// between them, row by row. What they say is taken off a raw reading, in its steps (an eighth of a pixel of
+// disparity).
+struct DisparityCorrection {
+  static constexpr int kMostColumns = 17, kMostRows = 13;
+  int columns = 0, rows = 0;  // 0: none; else at least 2
+  float steps[kMostColumns * kMostRows] = {};
+
+  // The four nodes round a pixel of an image of that size, and their weights, which sum up to 1.
+  struct Around {
+    int node[4];
+    double weight[4];
+  };
+  Around around(double u, double v, int width, int height) const;
+
+  bool empty() const { return columns == 0; }
+  double at(double u, double v, int width, int height) const;
+};
+
 struct Calibration {
   Intrinsics depth;
   DepthEncoding encoding = DepthEncoding::kRaw11;
   double depth_scale = 1000.0;
   double raw_a = 345.4894, raw_b = 1089.408;
+  DisparityCorrection correction;  // on the ideal pinhole grid
 
   bool has_color = false;  // a [color] table, or the default of a Kinect
   Intrinsics color;

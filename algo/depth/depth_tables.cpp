@@ -24,6 +24,7 @@ void DepthTables::bind(Bump& memory, const Calibration& calibration) {
   ray_x_ = memory.take<float>(width);
   ray_y_ = memory.take<float>(height);
   remap_ = memory.take<std::uint32_t>(calibration.depth.distorted() ? width * height : 0);
+  correction_ = memory.take<std::int16_t>(calibration.correction.empty() ? 0 : width * height);
 }
 
 double DepthTables::metres_of_stored(int stored) const {
@@ -49,6 +50,7 @@ void DepthTables::configure(const Calibration& calibration) {
   for (int v = 0; v < camera.height; ++v)
     ray_y_[static_cast<std::size_t>(v)] = static_cast<float>((v - camera.cy) / camera.fy);
   if (!remap_.empty()) fill_remap();
+  if (!correction_.empty()) fill_correction();
 }
 
 void DepthTables::fill_codes() {
@@ -82,6 +84,17 @@ void DepthTables::fill_remap() {
       remap_[pixel] = inside ? static_cast<std::uint32_t>(sv) * static_cast<std::uint32_t>(camera.width) +
                                    static_cast<std::uint32_t>(su)
                              : kNoSource;
+    }
+  }
+}
+
+void DepthTables::fill_correction() {
+  const Intrinsics& camera = calibration_.depth;
+  std::size_t pixel = 0;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const double codes = kCodesPerRaw * calibration_.correction.at(u, v, camera.width, camera.height);
+      correction_[pixel++] = static_cast<std::int16_t>(std::floor(codes + 0.5));
     }
   }
 }

@@ -20,7 +20,8 @@ inline constexpr double kFarthest_m = 10.0;
 
 class DepthTables {
  public:
-  // Memory for this calibration: a camera with lens distortion needs a remap table besides.
+  // Memory for this calibration: a camera with lens distortion needs a remap table besides, one whose own
+  // error is known a correction a pixel.
   void bind(Bump& memory, const Calibration& calibration);
   // Fills the tables. `calibration` is the one bind() was called with.
   void configure(const Calibration& calibration);
@@ -46,6 +47,9 @@ class DepthTables {
   static constexpr std::uint32_t kNoSource = 0xFFFFFFFFu;
   std::span<const std::uint32_t> remap() const { return remap_; }
 
+  // Codes to add to each pixel's reading. Empty where the calibration has no correction.
+  std::span<const std::int16_t> correction() const { return correction_; }
+
   // Raw encoding only: q = raw_origin - 8 raw where raw is within [raw_first, raw_last].
   int raw_origin() const { return raw_origin_; }
   int raw_first() const { return raw_first_; }
@@ -54,6 +58,7 @@ class DepthTables {
  private:
   void fill_codes();
   void fill_remap();
+  void fill_correction();
   double metres_of_stored(int stored) const;
 
   Calibration calibration_;
@@ -62,6 +67,7 @@ class DepthTables {
   std::span<std::uint16_t> code_of_stored_;
   std::span<float> z_of_stored_, z_of_code_, ray_x_, ray_y_;
   std::span<std::uint32_t> remap_;
+  std::span<std::int16_t> correction_;
 };
 
 }  // namespace st

@@ -34,6 +34,15 @@ std::uint32_t convert_by_table(const DepthTables& tables, const std::uint16_t* s
   return invalid;
 }
 
+// A reading stays one: what the correction would move out of the codes' range stops at its end.
+void correct(const std::int16_t* __restrict correction, std::uint16_t* __restrict code, int count) {
+  for (int i = 0; i < count; ++i) {
+    const int moved = code[i] + correction[i];
+    const int kept = moved < 1 ? 1 : moved < kCodes ? moved : kCodes - 1;
+    code[i] = code[i] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(kept);
+  }
+}
+
 }  // namespace
 
 CleanDepth preprocess(const DepthTables& tables, ImageView<const std::uint16_t> depth,
@@ -59,6 +68,7 @@ CleanDepth preprocess(const DepthTables& tables, ImageView<const std::uint16_t> 
   const bool linear = tables.raw_last() >= tables.raw_first();  // raw encoding, and some value in range
   out.invalid_pixels = linear ? convert_raw(tables, out.stored.data, code.data, count)
                               : convert_by_table(tables, out.stored.data, code.data, count);
+  if (!tables.correction().empty()) correct(tables.correction().data(), code.data, count);
   return out;
 }
 

@@ -48,6 +48,11 @@ std::uint32_t undistort(const DepthTables& tables, const std::uint16_t* stored, 
   return invalid;
 }
 
+// 1 / z grows by the correction.
+void correct(const std::int16_t* __restrict correction, float* __restrict z, int count, float inverse_m) {
+  for (int i = 0; i < count; ++i) z[i] /= 1.0f + z[i] * inverse_m * static_cast<float>(correction[i]);
+}
+
 }  // namespace
 
 void DepthPyramid::bind(Bump& memory, const Pinhole& camera) {
@@ -75,6 +80,9 @@ std::uint32_t fill_pyramid(const DepthTables& tables, ImageView<const std::uint1
     invalid =
         triangulate(stored.data, z.data, count, tables.calibration(), tables.raw_first(), tables.raw_last());
   }
+  if (!tables.correction().empty())
+    correct(tables.correction().data(), z.data, count,
+            static_cast<float>(1.0 / tables.codes_per_inverse_m()));
   for (int i = 1; i < DepthPyramid::kLevels; ++i) {
     const ImageView<float>&fine = pyramid.levels[i - 1].z, &coarse = pyramid.levels[i].z;
     halve_depth(fine.data, fine.width, coarse.data, coarse.width, coarse.height);

@@ -24,6 +24,11 @@ class Table {
     throw Failure(ExitCode::kBadInput, file_ + ":" + std::to_string(at.source().begin.line) + ": " + what);
   }
 
+  [[noreturn]] void fail_whole(const std::string& what) const {
+    throw Failure(ExitCode::kBadInput,
+                  file_ + ":" + std::to_string(table_.source().begin.line) + ": " + what);
+  }
+
   void allow_only(std::initializer_list<std::string_view> keys) const {
     for (const auto& [key, node] : table_) {
       bool known = false;
@@ -121,7 +126,26 @@ void read_color(const Table& table, Calibration& calibration) {
   calibration.T_color_depth.t = {t[0], t[1], t[2]};
 }
 
-std::string shortest(double value) {
+void read_correction(const Table& table, DisparityCorrection& correction) {
+  table.allow_only({"columns", "rows", "steps"});
+  for (const char* key : {"columns", "rows", "steps"})
+    if (table.get(key) == nullptr) table.fail_whole(std::string("'") + key + "' is missing");
+  table.read_size("columns", DisparityCorrection::kMostColumns, correction.columns);
+  table.read_size("rows", DisparityCorrection::kMostRows, correction.rows);
+  if (correction.columns < 2) table.fail(*table.get("columns"), "at least 2 columns make a grid");
+  if (correction.rows < 2) table.fail(*table.get("rows"), "at least 2 rows make a grid");
+  constexpr double kMost_steps = 64;  // eight pixels of disparity: no sensor is so far off
+  double steps[DisparityCorrection::kMostColumns * DisparityCorrection::kMostRows];
+  const int nodes = correction.columns * correction.rows;
+  table.read_array("steps", static_cast<std::size_t>(nodes), steps);
+  for (int i = 0; i < nodes; ++i) {
+    if (std::fabs(steps[i]) > kMost_steps) table.fail(*table.get("steps"), "a correction is beyond 64 steps");
+    correction.steps[i] = static_cast<float>(steps[i]);
+  }
+}
+
+template <typename Number>
+std::string shortest(Number value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, value).ptr;
   return {text, end};
@@ -131,6 +155,17 @@ std::string list_of(const double* values, std::size_t count) {
   std::string text = "[";
   for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + shortest(values[i]);
   return text + "]";
+}
+
+std::string format_correction(const DisparityCorrection& correction) {
+  if (correction.empty()) return {};
+  std::string text = "\n[correction]\ncolumns = " + std::to_string(correction.columns) +
+                     "\nrows = " + std::to_string(correction.rows) + "\nsteps = [";
+  for (int i = 0; i < correction.columns * correction.rows; ++i) {
+    text += i == 0 ? "\n  " : i % correction.columns == 0 ? ",\n  " : ", ";
+    text += shortest(correction.steps[i]);
+  }
+  return text + "\n]\n";
 }
 
 std::string format_intrinsics(const Intrinsics& camera) {
@@ -167,8 +202,8 @@ Calibration parse_camera_toml(std::string_view text, const std::string& name, Ca
                                            std::string(error.description()));
   }
   const Table table(root, name, "");
-  table.allow_only(
-      {"width", "height", "fx", "fy", "cx", "cy", "k", "depth_scale", "raw_a", "raw_b", "color"});
+  table.allow_only({"width", "height", "fx", "fy", "cx", "cy", "k", "depth_scale", "raw_a", "raw_b", "color",
+                    "correction"});
   // The keys' defaults are the contract's example: a Kinect. Only a missing file makes a TUM folder 525 and
   // 5000.
   Calibration calibration = default_calibration(CameraKind::kKinect);
@@ -177,6 +212,10 @@ Calibration parse_camera_toml(std::string_view text, const std::string& name, Ca
   table.read_positive("depth_scale", calibration.depth_scale);
   table.read_positive("raw_a", calibration.raw_a);
   table.read_positive("raw_b", calibration.raw_b);
+  if (const toml::node* correction = table.get("correction")) {
+    if (!correction->is_table()) table.fail(*correction, "'correction' must be a table: [correction]");
+    read_correction(Table(*correction->as_table(), name, "correction."), calibration.correction);
+  }
   const toml::node* color = table.get("color");
   calibration.has_color = color != nullptr;
   if (color == nullptr) return calibration;
@@ -198,6 +237,7 @@ std::string format_camera_toml(const Calibration& calibration) {
   std::string text = format_intrinsics(calibration.depth);
   text += "depth_scale = " + shortest(calibration.depth_scale) + "\nraw_a = " + shortest(calibration.raw_a) +
           "\nraw_b = " + shortest(calibration.raw_b) + "\n";
+  text += format_correction(calibration.correction);
   if (!calibration.has_color) return text;
   const Vec3& t = calibration.T_color_depth.t;
   const double translation[3] = {t.x, t.y, t.z};

@@ -190,6 +190,7 @@ Scene make_scene(const SceneOptions& options) {
   Random random(options.seed, 0x5ce7e), sensor_random(options.seed, 0x5e45),
       room_random(options.seed, 0x4004);
   choose_sensor(scene, sensor_random);
+  if (options.bow_steps > 0) scene.depth.bias = options.bow_steps;
   if (is_hand_scene(options.name)) {
     make_hand_scene(scene, options, room_random);
     return scene;

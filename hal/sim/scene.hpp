@@ -73,6 +73,7 @@ struct SceneOptions {
   RobotModel robot = RobotModel::kCreate2;
   bool laptop = false;
   double seconds = 0;              // 0: as long as the scene's script
+  double bow_steps = 0;            // smooth depth error over the image, peak, raw steps; 0: the seed's own
   std::vector<DriveCommand> path;  // replaces the scene's own path of the first robot; empty: its own
 };
 

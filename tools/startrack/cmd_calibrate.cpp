@@ -162,7 +162,7 @@ int calibrate(const Arguments& arguments) {
 
 void add_calibrate(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("calibrate", "measure this robot from a run before the camera");
+  CLI::App* command = app.add_subcommand("calibrate", "measure this robot, or this camera, from recordings");
   command->require_subcommand(1);
   CLI::App* robot = command->add_subcommand(
       "robot", "wheel sizes, wheel base and the camera's lag, from tracked drives with their robot.log");
@@ -182,6 +182,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
       ->type_name("REC...");
   robot->add_option("--out", arguments->out, "file to write")->capture_default_str()->type_name("FILE");
   robot->callback([arguments, &exit_code] { exit_code = calibrate(*arguments); });
+  add_calibrate_depth(*command, exit_code);
 }
 
 }  // namespace st

@@ -23,7 +23,7 @@ struct Options {
   std::string scene, folder, path_file;
   RobotModel robot = RobotModel::kCreate2;
   std::uint64_t seed = 1;
-  double seconds = 0;
+  double seconds = 0, bow_steps = 0;
   bool laptop = false, force = false;
 };
 
@@ -67,6 +67,7 @@ int simulate(const Options& o) {
   scene.robot = o.robot;
   scene.laptop = o.laptop;
   scene.seconds = o.seconds;
+  scene.bow_steps = o.bow_steps;
   if (!o.path_file.empty()) scene.path = commands_of(load_path(o.path_file));
   sim::Scene made = sim::make_scene(scene);
   prepare_folder(o);
@@ -109,6 +110,10 @@ void add_simulate(CLI::App& app, int& exit_code) {
   command->add_flag("--laptop", options->laptop, "An open laptop lies on the first robot");
   command->add_option("--seconds", options->seconds, "Length instead of the scene's own")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--bow", options->bow_steps,
+                   "A sensor that bows planes: smooth depth error over the image, raw steps at its peak")
+      ->check(CLI::Range(0.0, 32.0));
   command->add_flag("--force", options->force, "Replace a recording that stands in the folder");
   command->footer("Example: startrack simulate circle --out /tmp/circle --seed 7 --robot-model create1");
   command->callback([options, &exit_code] { exit_code = simulate(*options); });

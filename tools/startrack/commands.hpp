@@ -17,6 +17,7 @@ void add_create_sim(CLI::App& app, int& exit_code);
 void add_drive(CLI::App& app, int& exit_code);
 void add_robot(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
+void add_calibrate_depth(CLI::App& calibrate, int& exit_code);
 
 void add_cut(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);

@@ -135,3 +135,27 @@ TEST(DepthTables, NoiseFollowsThePublishedFigures) {
   DOUBLES_EQUAL(0, static_cast<double>(weights[0]), 0);
   CHECK(weights[2000] > weights[1000]);  // nearer weighs more
 }
+
+TEST(DepthTables, ACorrectionMovesEveryReadingByItsNodes) {
+  Calibration c = test::kinect_calibration(32, 24);
+  c.correction.columns = c.correction.rows = 2;
+  const float corners[] = {1.0f, -1.0f, 2.0f, 0.0f};
+  for (int i = 0; i < 4; ++i) c.correction.steps[i] = corners[i];
+  const Bound b(c);
+  CHECK_FALSE(b.memory.overflowed());
+  std::vector<std::uint16_t> stored(32 * 24, 800), code(32 * 24), spare;
+  stored[5] = 2047;
+  stored[31] = static_cast<std::uint16_t>(b.tables.raw_last());  // the farthest reading, moved farther still
+  preprocess(b.tables, {stored.data(), 32, 24}, {code.data(), 32, 24}, {});
+  const int plain = b.tables.code_of_stored()[800];
+  LONGS_EQUAL(plain + 8, code[0]);
+  LONGS_EQUAL(0, code[5]);
+  LONGS_EQUAL(plain + 16, code[23 * 32]);
+  LONGS_EQUAL(plain, code[24 * 32 - 1]);
+  CHECK(code[31] >= 1);  // it stays a reading
+  // Half way between all four nodes, 0.5 steps: a raw reading that is so much smaller is nearer.
+  const std::size_t middle = 12 * 32 + 16;
+  DOUBLES_EQUAL(plain + 4, code[middle], 1.0);
+  const double u = 16, v = 12;
+  DOUBLES_EQUAL(0.5, c.correction.at(u - 0.5, v - 0.5, 32, 24), 1e-6);
+}

@@ -82,3 +82,18 @@ TEST(DepthPyramid, AFrameOfAnotherSizeHasNoReading) {
   for (const DepthPyramid::Level& level : f.pyramid.levels)
     for (int i = 0; i < level.z.pixels(); ++i) DOUBLES_EQUAL(0, level.z.data[i], 0);
 }
+
+TEST(DepthPyramid, ACorrectionAddsToTheInverseOfDepth) {
+  for (const DepthEncoding encoding : {DepthEncoding::kScaled16, DepthEncoding::kRaw11}) {
+    Calibration c = small_camera(encoding);
+    c.correction.columns = c.correction.rows = 2;
+    for (int i = 0; i < 4; ++i) c.correction.steps[i] = 3.0f;
+    Filled f(c);
+    const std::uint16_t value = encoding == DepthEncoding::kRaw11 ? 900 : 10000;
+    f.stored[0] = value;
+    f.fill();
+    const double plain = static_cast<double>(f.tables.z_of_stored()[value]);
+    DOUBLES_EQUAL(1 / (1 / plain + 3 / c.raw_a), static_cast<double>(f.pyramid.levels[0].z.data[0]), 1e-5);
+    DOUBLES_EQUAL(0, f.pyramid.levels[0].z.data[1], 0);
+  }
+}

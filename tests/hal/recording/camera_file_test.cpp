@@ -99,3 +99,28 @@ TEST(CameraFile, WhatIsWrittenReadsBackTheSame) {
   c.has_color = false;
   CHECK(!parse_camera_toml(format_camera_toml(c), "camera.toml", CameraKind::kKinect).has_color);
 }
+
+TEST(CameraFile, ACorrectionReadsBackTheSame) {
+  Calibration c = default_calibration(CameraKind::kKinect);
+  c.correction.columns = 3;
+  c.correction.rows = 2;
+  for (int i = 0; i < 6; ++i) c.correction.steps[i] = 0.1f * static_cast<float>(i) - 0.2f;
+  const Calibration back = parse_camera_toml(format_camera_toml(c), "camera.toml", CameraKind::kKinect);
+  LONGS_EQUAL(3, back.correction.columns);
+  LONGS_EQUAL(2, back.correction.rows);
+  for (int i = 0; i < 6; ++i) DOUBLES_EQUAL(c.correction.steps[i], back.correction.steps[i], 0);
+  CHECK(back.has_color);
+}
+
+TEST(CameraFile, ACorrectionThatIsNoGridIsRefusedWithItsLine) {
+  STRCMP_CONTAINS("camera.toml:1: 'steps' is missing",
+                  error_of("[correction]\ncolumns = 2\nrows = 2\n").c_str());
+  STRCMP_CONTAINS(":4: 'correction.steps' must be a list of 4 numbers",
+                  error_of("[correction]\ncolumns = 2\nrows = 2\nsteps = [1, 2, 3]\n").c_str());
+  STRCMP_CONTAINS(":2: ", error_of("[correction]\ncolumns = 1\nrows = 2\nsteps = [1, 2]\n").c_str());
+  STRCMP_CONTAINS(":3: ", error_of("[correction]\ncolumns = 2\nrows = 99\nsteps = [1, 2]\n").c_str());
+  STRCMP_CONTAINS("64 steps",
+                  error_of("[correction]\ncolumns = 2\nrows = 2\nsteps = [1, 2, 3, -65]\n").c_str());
+  STRCMP_CONTAINS("unknown key", error_of("[correction]\ncolumn = 2\n").c_str());
+  STRCMP_CONTAINS("must be a table", error_of("correction = 3\n").c_str());
+}

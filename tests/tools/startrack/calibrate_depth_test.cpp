@@ -1,0 +1,45 @@
+#include "hal/error.hpp"
+#include "hal/recording/camera_file.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temp_folder.hpp"
+
+#include <CppUTest/TestHarness.h>  // last: its macro for new breaks the headers of the standard library
+
+using namespace st;
+using namespace st::test;
+
+TEST_GROUP(CalibrateDepth) {
+  TempFolder folder;
+  std::string floor(const std::string& name, const std::string& bow) const {
+    const std::string recording = folder / name;
+    LONGS_EQUAL(0, startrack({"simulate", "empty", "--seed", "2", "--seconds", "0.5", "--bow", bow, "--out",
+                              recording})
+                       .code);
+    return recording;
+  }
+};
+
+TEST(CalibrateDepth, ABowedSensorGetsACameraFileThatTakesTheBowOff) {
+  const std::string recording = floor("bowed", "6"), file = folder / "camera.toml";
+  const Said said = startrack({"calibrate", "depth", recording, "--out", file});
+  LONGS_EQUAL(0, said.code);
+  STRCMP_CONTAINS("below the camera", said.out.c_str());
+  STRCMP_CONTAINS("known in", said.out.c_str());
+  const Calibration camera = read_camera_file(file, CameraKind::kKinect);
+  CHECK(!camera.correction.empty());
+  CHECK(camera.has_color);
+  // The loop takes it.
+  LONGS_EQUAL(0, startrack({"replay", recording, "--camera", file, "--out", folder / "run"}).code);
+}
+
+TEST(CalibrateDepth, WhatIsNoFloorAndWhatIsNoKinectIsRefused) {
+  const std::string recording = floor("plain", "0.2");
+  const Said uneven = startrack({"calibrate", "depth", recording, "--height-m", "1.2", "1.3"});
+  LONGS_EQUAL(2, uneven.code);
+  STRCMP_CONTAINS("for every recording", uneven.err.c_str());
+  const Said nothing = startrack({"calibrate", "depth", folder / "missing"});
+  LONGS_EQUAL(2, nothing.code);
+  const Said nowhere = startrack({"calibrate", "depth", recording, "--out", "/nowhere/camera.toml"});
+  LONGS_EQUAL(2, nowhere.code);
+  STRCMP_CONTAINS("cannot be written", nowhere.err.c_str());
+}
