@@ -98,6 +98,7 @@ class ObjectTracker {
 
   void update_support();
   bool ask_wheels(Track& track);
+  bool is_alone(const Track& track) const;
   void judge_wheels(Track& track);
   void match_wheels();
   void align_one(Track& track, std::size_t k, const LadderStep& step);
