@@ -33,7 +33,7 @@ void ObjectTracker::leave_floor(Track& track, const AlignInput& held) {
   in.prior = motion.prior();
   in.start = track.aligned.T_camera_object;
   in.floor.on = false;
-  const AlignResult free = align(in, scratch_);
+  const AlignResult free = align_again(in, scratch_);
   const bool off =
       free.solved && free.depth.inliers > kBetter * fit.inliers && is_off(free.T_camera_object, support_);
   track.off_floor_run = off ? track.off_floor_run + 1 : 0;

@@ -39,7 +39,7 @@ void ObjectTracker::defend_heading(Track& track, const AlignInput& in) {
   other.prior.mean.R = turn * in.prior.mean.R;
   other.start = other.prior.mean;
   other.heading.turn_rad = 0;
-  const AlignResult expected = align(other, scratch_);
+  const AlignResult expected = align_again(other, scratch_);
   const double still_off =
       wrap_angle(support_.on_floor(expected.T_camera_object).yaw - track.heading.yaw_rad);
   const bool agrees = std::fabs(still_off) < 0.5 * std::fabs(off);

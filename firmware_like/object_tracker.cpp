@@ -37,52 +37,6 @@ ObjectTracker::ObjectTracker(const Calibration& calibration, const LoopConfig& c
   frame_.camera = Pinhole::of(calibration.depth);
 }
 
-void ObjectTracker::plan_memory(MemoryPlan& plan) {
-  plan.add("images of the frame", "firmware_like", parts_[0]);
-  plan.add("background and segments", "algo/segmentation", parts_[1]);
-  plan.add("models, one volume an object", "algo/volume", parts_[2]);
-  plan.add("views of the models", "algo/tracking", parts_[3]);
-  plan.add("observed points", "algo/tracking", parts_[4]);
-  plan.add("work memory of the fusion", "algo/volume", parts_[5]);
-  if (knows_models() || tracks_by_matches()) plan.add("recognition", "algo/recognition", parts_[6]);
-  if (tracks_by_matches()) plan.add("features of the frame before", "algo/recognition", parts_[7]);
-}
-
-void ObjectTracker::bind_images(Bump& memory) {
-  const int width = calibration_.depth.width, height = calibration_.depth.height;
-  const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  frame_.bind(memory, width, height);
-  rest_z_ = {memory.take<float>(n).data(), width, height};
-  registered_color_ = {memory.take<std::uint32_t>(n).data(), width, height};
-  const Intrinsics& color = calibration_.color_registered ? calibration_.depth : calibration_.color;
-  color_frame_.bind(memory, color.width, color.height);
-}
-
-void ObjectTracker::bind_segmenter(Bump& memory) { segmenter_.bind(memory, calibration_); }
-
-void ObjectTracker::bind_volumes(Bump& memory) {
-  for (Track& track : tracks_) track.volume.bind(memory, config_.volume_side);
-}
-
-void ObjectTracker::bind_views(Bump& memory) {
-  const int width = calibration_.depth.width, height = calibration_.depth.height;
-  for (Track& track : tracks_) track.rendered.maps.bind(memory, width, height);
-  raycast_scratch_.bind(memory, width, height);
-  scratch_.bind(memory, width, height);
-  if (config_.tracker == TrackerKind::kFrameToFrame)
-    for (FrameViewMemory& previous : previous_) previous.bind(memory, width, height);
-  if (config_.tracker == TrackerKind::kListing1)
-    for (ModelCloud& cloud : clouds_) cloud.bind(memory);
-}
-
-void ObjectTracker::bind_points(Bump& memory) {
-  points_ = memory.take<ObservedPoint>(kMaxPoints * kMaxObjects);
-}
-
-void ObjectTracker::bind_integration(Bump& memory) {
-  integrate_scratch_.bind(memory, calibration_.depth.width, calibration_.depth.height, config_.volume_side);
-}
-
 void ObjectTracker::start() {
   segmenter_.configure(calibration_);
   registration_.configure(calibration_);
@@ -210,22 +164,6 @@ void ObjectTracker::observe(Track& track, std::size_t k, const Rect& box) {
   const std::uint8_t owner = static_cast<std::uint8_t>(k + 1);
   if (config_.use_cleaning) mark_edges(frame_.depth_z, owner, box, frame_.owners);
   track.points_used = gather_points(frame_.depth_z, frame_.owners, owner, box, frame_.camera, points_of(k));
-}
-
-// The part of the colour image that the depth image's `box` may appear in.
-void ObjectTracker::look_at_colors(const Rect& box, const LadderStep& step) {
-  color_frame_.roi = {0, 0, 0, 0};
-  if (frame_.has_color && step.color_term)
-    build_color_frame(registration_, frame_.color, frame_.camera, box, color_frame_);
-}
-
-// The colours of the track's pixels in this frame, as it was when the colour image was taken; empty where
-// there are none.
-ImageView<std::uint32_t> ObjectTracker::register_colors(std::size_t k, const Rect& box) {
-  if (!frame_.has_color) return {};
-  register_color(registration_, frame_.color, to_float(tracks_[k].aligned.color_motion), frame_.depth_z,
-                 frame_.owners, static_cast<std::uint8_t>(k + 1), box, frame_.camera, registered_color_);
-  return registered_color_;
 }
 
 // A hand that takes hold of an object hangs together with it. Meanwhile neither pixels beside the model, as

@@ -137,16 +137,20 @@ Step solve(const NormalEquations& eq) {
 }  // namespace
 
 AlignResult align(const AlignInput& in, AlignScratch& scratch) {
+  build_view_table(in.view, scratch.view);
+  arrange_points(in.points, PointTable::kMost / static_cast<std::size_t>(in.point_stride), scratch.points);
+  scratch.outline_count = find_outline(scratch.view, in.camera, scratch.outline);
+  return align_again(in, scratch);
+}
+
+AlignResult align_again(const AlignInput& in, AlignScratch& scratch) {
   AlignResult result;
   result.T_camera_object = in.start;
   Pose T = in.start;
   double shift_px[2] = {0, 0};
   const ContourTermOptions contour_options;
   NormalEquations shape, colour, data, all;
-  build_view_table(in.view, scratch.view);
-  arrange_points(in.points, PointTable::kMost / static_cast<std::size_t>(in.point_stride), scratch.points);
-  std::size_t outline_count = 0, contour_count = 0;
-  if (in.terms.contour) outline_count = find_outline(scratch.view, in.camera, scratch.outline);
+  std::size_t contour_count = 0;
 
   const Pose T_view_inverse = in.view.T_camera_object.inverse();
   const Vec3 pivot_then = in.color_time.motion * in.pivot;
@@ -167,7 +171,7 @@ AlignResult align(const AlignInput& in, AlignScratch& scratch) {
 
     const Pose D0 = T * T_view_inverse;
     if (in.terms.contour)
-      contour_count = find_contour({scratch.outline, outline_count}, in.camera, in.depth_z, D0,
+      contour_count = find_contour({scratch.outline, scratch.outline_count}, in.camera, in.depth_z, D0,
                                    contour_options, scratch.contour);
     const auto look = [&] {
       return ColorLook{scratch.color_points,

@@ -78,6 +78,7 @@ struct AlignScratch {
   ViewTable view;
   PointTable points, color_points;
   OutlinePoint outline[kMaxContourPoints];
+  std::size_t outline_count = 0;
   ContourPoint contour[kMaxContourPoints];
 
   void bind(Bump& memory, int max_width, int max_height) {
@@ -88,6 +89,10 @@ struct AlignScratch {
 };
 
 AlignResult align(const AlignInput& input, AlignScratch& scratch);
+
+// The same points beside the same view once more, with another start, prior or terms: what align() has laid
+// out in `scratch` is used again. A third of the time is spared.
+AlignResult align_again(const AlignInput& input, AlignScratch& scratch);
 
 // One-sigma error of the turn about `axis` (camera frame, unit) when everything else is unknown too; huge
 // when unseen.

@@ -4,7 +4,7 @@ namespace st {
 namespace {
 
 constexpr int kSteps = 3;        // to each side
-constexpr int kTryStride = 2;    // every other point is enough to tell them apart
+constexpr int kTryStride = 2, kTryLevels = 2;  // enough to tell them apart
 constexpr float kBetter = 0.8f;  // of the residuals of a heading that is worth a change
 
 }  // namespace
@@ -29,7 +29,8 @@ bool align_beside(const AlignInput& in, const Habit& habit, const Vec3& up, Alig
     other.start = other.prior.mean;
     other.heading.on = false;
     other.point_stride = kTryStride;
-    const AlignResult tried = align(other, scratch);
+    other.levels = kTryLevels;
+    const AlignResult tried = align_again(other, scratch);
     if (!tried.solved || tried.color.used < kLeastColored || tried.color.sigma >= least) continue;
     least = tried.color.sigma;
     best = other;
@@ -37,7 +38,8 @@ bool align_beside(const AlignInput& in, const Habit& habit, const Vec3& up, Alig
   }
   if (!found) return false;
   best.point_stride = in.point_stride;
-  const AlignResult beside = align(best, scratch);
+  best.levels = in.levels;
+  const AlignResult beside = align_again(best, scratch);
   if (look_score(beside) <= look_score(result) || habit.wondered_at_by_color(beside)) return false;
   const Mat3 all = beside.T_camera_object.R * in.prior.mean.R.transposed();
   turn = rotation_from_vector(up * dot(rotation_to_vector(all), up));
