@@ -96,14 +96,15 @@ void ScanTracker::place_volume() {
   volume_.reset(voxel, choose_truncation_m(voxel, depth_sigma_m(far_m)), centre);
 }
 
-// While searching, the scene is looked at from the places that were most like what the camera sees now, one
-// a frame, and from where it was lost.
+// While searching, the scene is looked at from where the last try led to, else from the places that were most
+// like what the camera sees now, one a frame, and from where it was lost.
 void ScanTracker::predict() {
   T_world_view_ = course_ == Course::kSearching ? place_to_try() : motion_.predict(input_->device_t_s);
 }
 
 Pose ScanTracker::place_to_try() const {
   constexpr std::size_t kPlacesTried = 5;
+  if (has_lead_) return T_world_lead_;
   const std::size_t turn = tries_ % (kPlacesTried + 1);
   if (turn == 0 || places_.size() == 0) return motion_.last();
   return places_.like(thumbnail_of(depth_.levels[2].z), (turn - 1) % places_.size()).T_world_camera;
@@ -155,11 +156,27 @@ void ScanTracker::judge() {
   verdict_ = judge_camera(aligned_, depth_.levels[0].z.pixels(), habit_);
   camera_now_ = {verdict_.state, T_world_view_ * aligned_.T_view_camera, verdict_.explained,
                  static_cast<float>(aligned_.rms_m)};
-  // What is found by searching has more to show than what was followed.
-  constexpr float kLeastPairedFound = 0.2f, kOfUsual = 0.85f;
-  const bool found = verdict_.state == TrackState::kGood && verdict_.paired > kLeastPairedFound &&
-                     verdict_.explained > kOfUsual * habit_.explained && upright(camera_now_.T_world_camera);
-  if (course_ == Course::kSearching && !found) camera_now_.state = TrackState::kLost;
+  if (course_ == Course::kSearching && !found()) {
+    follow_lead();
+    camera_now_.state = TrackState::kLost;
+  }
+}
+
+// What is found by searching has more to show than what was followed.
+bool ScanTracker::found() const {
+  constexpr float kLeastPaired = 0.2f, kOfUsual = 0.85f;
+  return verdict_.state == TrackState::kGood && verdict_.paired > kLeastPaired &&
+         verdict_.explained > kOfUsual * habit_.explained && upright(camera_now_.T_world_camera);
+}
+
+// A try that explains something came near, and the next one from there has more in reach; so on for as long
+// as each explains clearly more than the one before.
+void ScanTracker::follow_lead() {
+  constexpr float kClearlyMore = 0.02f;
+  has_lead_ = verdict_.state != TrackState::kLost &&
+              (!has_lead_ || verdict_.explained > lead_explained_ + kClearlyMore);
+  T_world_lead_ = camera_now_.T_world_camera;
+  lead_explained_ = verdict_.explained;
 }
 
 bool ScanTracker::upright(const Pose& T_world_camera) const {
@@ -194,7 +211,7 @@ void ScanTracker::decide() {
       follow();
       break;
     case Course::kSearching:
-      ++tries_;
+      if (aligned_.readings > 0 && !has_lead_) ++tries_;  // a covered camera has not tried
       if (camera_now_.state != TrackState::kGood) break;
       motion_.restart(input_->device_t_s, camera_now_.T_world_camera);
       course_ = Course::kProving;
@@ -233,19 +250,23 @@ void ScanTracker::follow() {
 }
 
 void ScanTracker::lose() {
+  search();
+  lost_t_s_ = input_->t_s;
+  log(EventKind::kLost, camera_now_.inliers);
+}
+
+void ScanTracker::search() {
   camera_now_.state = TrackState::kLost;
   course_ = Course::kSearching;
   tries_ = 0;
-  lost_t_s_ = input_->t_s;
-  log(EventKind::kLost, camera_now_.inliers);
+  has_lead_ = false;
 }
 
 // Found again: the scene may change once several frames in a row have borne it out.
 void ScanTracker::prove() {
   constexpr int kProofs = 3;
   if (camera_now_.state != TrackState::kGood) {
-    course_ = Course::kSearching;
-    camera_now_.state = TrackState::kLost;
+    search();
     return;
   }
   motion_.take(input_->device_t_s, camera_now_.T_world_camera);

@@ -58,10 +58,13 @@ class ScanTracker {
   Pose place_to_try() const;
   CameraPrior prior() const;
   bool take_color();
+  bool found() const;
+  void follow_lead();
   bool upright(const Pose& T_world_camera) const;
   void learn_up();
   void follow();
   void lose();
+  void search();
   void prove();
   void watch_border();
   void log(EventKind kind, double a = 0, double b = 0);
@@ -97,6 +100,9 @@ class ScanTracker {
   Course course_ = Course::kFollowing;
   int poor_run_ = 0, proven_ = 0;
   std::size_t tries_ = 0;  // places tried since the camera was lost
+  bool has_lead_ = false;  // the last try came nearer
+  Pose T_world_lead_;      // where it led
+  float lead_explained_ = 0;
   double lost_t_s_ = 0;
   bool outside_ = false;  // most of what the camera sees lies outside of the volume
   FixedVector<Event, 8> events_;

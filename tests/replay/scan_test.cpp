@@ -87,6 +87,15 @@ TEST(ReplayScan, ACoveredCameraIsLostAndFindsItsWayBack) {
   CHECK(worst_m(run, hand_scan()) < 0.015);  // nothing of the dark was fused, and the way back is true
 }
 
+// Uncovered far from every place that it knows, it comes nearer try by try.
+TEST(ReplayScan, ACameraThatWentOnBlindFindsItsWayBackFromANearMiss) {
+  const std::string recording = folder / "went-on";
+  scan_covered_between(recording, 20, 45);
+  const std::string run = scan(recording, "near");
+  CHECK(summary_of(run)["lost"].get<int>() < 25 + 8);
+  CHECK(worst_m(run, hand_scan()) < 0.015);
+}
+
 TEST(ReplayScan, ACameraThatStaysCoveredEndsLost) {
   const std::string recording = folder / "dark";
   scan_covered_between(recording, 30, 89);
