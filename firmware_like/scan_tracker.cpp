@@ -78,7 +78,13 @@ void ScanTracker::preprocess(const FrameInput& input, FrameReport& report) {
   input_ = &input;
   events_.clear();
   report.invalid_pixels = fill_pyramid(tables_, input.depth, depth_);
-  if (frames_++ == 0) place_volume();
+  // A lens that is still covered says nothing of how far the scene goes.
+  constexpr float kLeastReadings = 0.2f;
+  const ImageView<float>& z = depth_.levels[0].z;
+  const auto readings = static_cast<float>(z.pixels()) - static_cast<float>(report.invalid_pixels);
+  if (course_ != Course::kWaiting || readings < kLeastReadings * static_cast<float>(z.pixels())) return;
+  place_volume();
+  course_ = Course::kFollowing;
 }
 
 // As wide as what the first frame shows is far, and a little behind it; the camera stands before the middle
@@ -149,7 +155,8 @@ void ScanTracker::align() {
 
 void ScanTracker::judge() {
   camera_now_ = CameraSample{};
-  if (volume_.integrations == 0) {  // the first frame is where the world begins
+  if (course_ == Course::kWaiting) return;
+  if (volume_.integrations == 0) {  // where the world begins
     camera_now_.state = TrackState::kGood;
     return;
   }
@@ -207,6 +214,8 @@ bool ScanTracker::take_color() {
 
 void ScanTracker::decide() {
   switch (course_) {
+    case Course::kWaiting:
+      break;
     case Course::kFollowing:
       follow();
       break;

@@ -77,7 +77,6 @@ class ScanTracker {
   DepthPyramid depth_;
   ImageView<std::uint32_t> color_;  // of the frame that is fused, in the depth camera's pixels
   const FrameInput* input_ = nullptr;
-  std::uint64_t frames_ = 0;
 
   Volume volume_;
   ModelMaps view_;  // the scene at T_world_view_
@@ -94,10 +93,11 @@ class ScanTracker {
   Places places_;
   Vec3 up_world_{};  // by the accelerometer, over the good frames so far; zero: it never said
 
-  // Good: followed and fused. Searching: lost, a kept place is tried each frame. Proving: found again, and
-  // followed for some frames before the scene may change.
-  enum class Course { kFollowing, kSearching, kProving };
-  Course course_ = Course::kFollowing;
+  // Waiting: for the first frame with depth enough to place the volume. Following: each good frame is fused.
+  // Searching: lost, a kept place is tried each frame. Proving: found again, and followed for some frames
+  // before the scene may change.
+  enum class Course { kWaiting, kFollowing, kSearching, kProving };
+  Course course_ = Course::kWaiting;
   int poor_run_ = 0, proven_ = 0;
   std::size_t tries_ = 0;  // places tried since the camera was lost
   bool has_lead_ = false;  // the last try came nearer

@@ -1,0 +1,95 @@
+#include "firmware_like/scan_tracker.hpp"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "tests/algo/tracking/corner_room.hpp"
+
+#include <CppUTest/TestHarness.h>  // last: its macro for new breaks the headers of the standard library
+
+using namespace st;
+using namespace st::test;
+
+namespace {
+
+Calibration room_calibration() {
+  Calibration c;
+  c.depth = {kRoomCamera.width, kRoomCamera.height, kRoomCamera.fx,
+             kRoomCamera.fy,    kRoomCamera.cx,     kRoomCamera.cy};
+  c.encoding = DepthEncoding::kScaled16;
+  return c;
+}
+
+LoopConfig room_config() {
+  LoopConfig config;
+  config.mode = Mode::kScan;
+  config.volume_side = 128;
+  return config;
+}
+
+// The hand goes sideways and turns a little: 6 mm and 0.2 degrees a frame.
+Pose way(int frame) { return {rotation_from_vector({0, 0.003 * frame, 0}), {0.006 * frame, 0, 0}}; }
+
+// A tracker and the camera that it follows through the room.
+struct Hand {
+  Hand() : tracker(room_calibration(), room_config()) {
+    tracker.plan_memory(plan);
+    memory.resize(plan.bytes() + Bump::kAlign);
+    void* start = memory.data();
+    std::size_t room = memory.size();
+    std::align(Bump::kAlign, plan.bytes(), start, room);
+    plan.seal(Bump(start, room));
+    tracker.start();
+  }
+
+  FrameReport see(std::span<const Wall> walls, const Pose& T_world_camera) {
+    const RoomFrame room(walls, T_world_camera);
+    const ImageView<float>& z = room.depth.levels[0].z;
+    std::vector<std::uint16_t> stored(static_cast<std::size_t>(z.pixels()));
+    for (std::size_t i = 0; i < stored.size(); ++i)
+      stored[i] = static_cast<std::uint16_t>(std::lround(z.data[i] * 1000));
+    FrameInput input;
+    input.t_s = input.device_t_s = static_cast<double>(frames++) / 30;
+    input.depth = {stored.data(), z.width, z.height};
+    FrameReport report;
+    tracker.preprocess(input, report);
+    tracker.predict();
+    tracker.render();
+    tracker.align();
+    tracker.judge();
+    tracker.integrate();
+    tracker.decide();
+    tracker.publish(report);
+    return report;
+  }
+
+  ScanTracker tracker;
+  MemoryPlan plan;
+  std::vector<std::uint8_t> memory;
+  int frames = 0;
+};
+
+}  // namespace
+
+TEST_GROUP(ScanTracker) { Hand hand; };
+
+TEST(ScanTracker, FollowsACameraThroughARoom) {
+  FrameReport report;
+  for (int i = 0; i < 20; ++i) report = hand.see(kCorner, way(i));
+  CHECK(report.camera.state == TrackState::kGood);
+  DOUBLES_EQUAL(0, norm(report.camera.T_world_camera.t - way(19).t), 0.003);
+  UNSIGNED_LONGS_EQUAL(20, hand.tracker.count().tracked);
+}
+
+TEST(ScanTracker, TheWorldBeginsAtTheFirstFrameThatSeesEnough) {
+  for (int i = 0; i < 3; ++i) {
+    const FrameReport report = hand.see(std::span<const Wall>{}, way(0));
+    CHECK(report.camera.state == TrackState::kLost);
+    CHECK(report.events.empty());  // nothing was had that could be lost
+  }
+  CHECK(hand.see(kCorner, way(0)).camera.state == TrackState::kGood);
+  CHECK(hand.tracker.scene().extent_m() > 2);  // as far as the room goes
+  CHECK(hand.see(kCorner, way(1)).camera.state == TrackState::kGood);
+  UNSIGNED_LONGS_EQUAL(3, hand.tracker.count().lost);
+}
