@@ -3,10 +3,10 @@
 namespace st {
 
 const StageBudget kStageBudgets[kStageCount] = {
-    {Stage::kAcquire, 200, 200},   {Stage::kPreprocess, 2000, 4000}, {Stage::kSegment, 2500, 300},
-    {Stage::kAssociate, 300, 100}, {Stage::kPredict, 100, 100},      {Stage::kRender, 2500, 12000},
-    {Stage::kAlign, 4000, 9000},   {Stage::kJudge, 400, 400},        {Stage::kIntegrate, 3000, 6000},
-    {Stage::kDecide, 400, 300},    {Stage::kSend, 200, 200},         {Stage::kPublish, 400, 400},
+    {Stage::kAcquire, 200, 200}, {Stage::kPreprocess, 2000, 800}, {Stage::kSegment, 2500, 0},
+    {Stage::kAssociate, 300, 0}, {Stage::kPredict, 100, 100},     {Stage::kRender, 2500, 11500},
+    {Stage::kAlign, 4000, 9000}, {Stage::kJudge, 400, 100},       {Stage::kIntegrate, 3000, 10500},
+    {Stage::kDecide, 400, 300},  {Stage::kSend, 200, 0},          {Stage::kPublish, 400, 400},
 };
 
 namespace {

@@ -9,17 +9,17 @@ namespace st {
 struct LadderStep {
   int level;
   const char* name;
-  bool color_term;   // the colour term takes part in the pose
-  int point_stride;  // every n-th pixel of the object enters the pose
+  bool color_term;   // colour takes part: in an object's pose, or in what a scan fuses
+  int point_stride;  // every n-th pixel of the object enters the pose; of a scan, every n-th column and row
   bool integrate;    // the frame enters the model
-  int search_tries;  // poses that are tried for a lost object in a frame
+  int search_tries;  // poses that are tried for a lost object in a frame; a lost camera tries one
 };
 
 // 0 is full work. Colour goes first: depth, floor and odometry still hold the pose. The model comes last:
 // without integration the pose is as good as before for as long as the same surface is seen.
 inline constexpr LadderStep kLadder[] = {
     {0, "full work", true, 1, true, 9},
-    {1, "no colour term", false, 1, true, 6},
+    {1, "no colour", false, 1, true, 6},
     {2, "every second point", false, 2, true, 3},
     {3, "no integration", false, 2, false, 3},
 };

@@ -6,17 +6,18 @@ namespace st {
 // fuse; the pose is judged before it may change the scene.
 LoopEnd ScanLoop::run() {
   while (acquire()) {
+    const LadderStep& step = ladder_step(level_);
     tracker_.preprocess(input_, report_);
     stages_.done(Stage::kPreprocess);
     tracker_.predict();
     stages_.done(Stage::kPredict);
-    tracker_.render();
+    tracker_.render(step);
     stages_.done(Stage::kRender);
-    tracker_.align();
+    tracker_.align(step);
     stages_.done(Stage::kAlign);
     tracker_.judge();
     stages_.done(Stage::kJudge);
-    tracker_.integrate();
+    tracker_.integrate(step);
     stages_.done(Stage::kIntegrate);
     tracker_.decide();
     stages_.done(Stage::kDecide);

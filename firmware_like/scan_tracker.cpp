@@ -9,6 +9,9 @@ namespace {
 constexpr int kScanSide = 256;
 // A room does not change: what was seen often is to be held as long as a byte can count.
 constexpr IntegrateOptions kIntegrate{.noise = {}, .weight_cap = kMaxWeightCap};
+// The finest level of the pyramid that a late frame is looked at on.
+int finest(const LadderStep& step) { return step.point_stride > 1 ? 1 : 0; }
+
 constexpr float kMaxExtent_m = 8, kMinExtent_m = 0.8f;
 
 // The share `q` of the readings is nearer than this. Of every 7th pixel, in 1 cm steps.
@@ -116,14 +119,15 @@ Pose ScanTracker::place_to_try() const {
   return places_.like(thumbnail_of(depth_.levels[2].z), (turn - 1) % places_.size()).T_world_camera;
 }
 
-void ScanTracker::render() {
+void ScanTracker::render(const LadderStep& step) {
+  const DepthPyramid::Level& level = depth_.levels[finest(step)];
   RaycastOptions options;
   options.with_color = false;
   options.smooth_young = true;
   // Where the camera is about where it is expected, its own readings say where the surfaces are.
-  if (course_ != Course::kSearching) options.guess = depth_.levels[0].z;
-  raycast(volume_, camera_, {0, 0, camera_.width, camera_.height}, T_world_view_.inverse(), raycast_scratch_,
-          view_, options);
+  if (course_ != Course::kSearching) options.guess = level.z;
+  raycast(volume_, level.camera, {0, 0, level.camera.width, level.camera.height}, T_world_view_.inverse(),
+          raycast_scratch_, view_, options);
 }
 
 CameraPrior ScanTracker::prior() const {
@@ -137,15 +141,16 @@ CameraPrior ScanTracker::prior() const {
   return prior;
 }
 
-void ScanTracker::align() {
+void ScanTracker::align(const LadderStep& step) {
   constexpr double kSearchGate_m = 0.3, kSecondGate_m = 0.2;
   aligned_ = CameraAlignResult{};
   if (volume_.integrations == 0) return;
-  CameraAlignInput in{depth_, view_, camera_, Pose{}, prior()};
+  CameraAlignInput in{depth_, view_, depth_.levels[finest(step)].camera, Pose{}, prior()};
+  in.finest = finest(step);
   if (course_ == Course::kSearching) in.gate_m = kSearchGate_m;
   aligned_ = align_camera(in);
   if (course_ == Course::kSearching) return;
-  if (judge_camera(aligned_, depth_.levels[0].z.pixels(), habit_).state == TrackState::kGood) return;
+  if (judge_camera(aligned_, habit_).state == TrackState::kGood) return;
   // A hand that stops or turns at once is nearer to where it was than to where it was going.
   in.start = T_world_view_.inverse() * motion_.last();
   in.gate_m = kSecondGate_m;
@@ -160,7 +165,7 @@ void ScanTracker::judge() {
     camera_now_.state = TrackState::kGood;
     return;
   }
-  verdict_ = judge_camera(aligned_, depth_.levels[0].z.pixels(), habit_);
+  verdict_ = judge_camera(aligned_, habit_);
   camera_now_ = {verdict_.state, T_world_view_ * aligned_.T_view_camera, verdict_.explained,
                  static_cast<float>(aligned_.rms_m)};
   if (course_ == Course::kSearching && !found()) {
@@ -192,13 +197,13 @@ bool ScanTracker::upright(const Pose& T_world_camera) const {
   return dot(T_world_camera.R * normalized(input_->gravity_mps2), normalized(up_world_)) > kCosMostLean;
 }
 
-void ScanTracker::integrate() {
-  if (camera_now_.state != TrackState::kGood || course_ != Course::kFollowing) return;
+void ScanTracker::integrate(const LadderStep& step) {
+  if (!step.integrate || camera_now_.state != TrackState::kGood || course_ != Course::kFollowing) return;
   EvidenceInput input;
   input.camera = camera_;
   input.roi = {0, 0, camera_.width, camera_.height};
   input.depth_m = depth_.levels[0].z;
-  if (take_color()) input.color = color_;
+  if (step.color_term && take_color()) input.color = color_;
   fused_ =
       st::integrate(volume_, input, camera_now_.T_world_camera.inverse(), kIntegrate, integrate_scratch_);
   count_.bricks_fused += fused_.bricks;

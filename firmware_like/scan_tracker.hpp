@@ -13,6 +13,7 @@
 #include "algo/volume/integrate.hpp"
 #include "algo/volume/raycast.hpp"
 #include "firmware_like/config.hpp"
+#include "firmware_like/degradation.hpp"
 #include "firmware_like/memory_plan.hpp"
 #include "hal/results/run_end.hpp"
 
@@ -31,10 +32,10 @@ class ScanTracker {
 
   void preprocess(const FrameInput& input, FrameReport& report);
   void predict();
-  void render();
-  void align();
+  void render(const LadderStep& step);
+  void align(const LadderStep& step);
   void judge();
-  void integrate();
+  void integrate(const LadderStep& step);
   void decide();  // lost, recovered, out of the volume
   void publish(FrameReport& report);
 

@@ -112,6 +112,7 @@ CameraAlignResult align_camera(const CameraAlignInput& in) {
   CameraAlignResult result;
   Pose T = in.start;
   for (const Level& level : kLevels) {
+    if (level.of_pyramid < in.finest) break;
     CameraKernel k = prepared(in, level);
     // A coarse pixel stands for the readings that it was averaged from.
     const double pixels = static_cast<double>(1 << (2 * level.of_pyramid));
@@ -134,6 +135,7 @@ CameraAlignResult align_camera(const CameraAlignInput& in) {
       T = moved_about(T, step.twist, Vec3{});
       if (step.move_m < level.settled_m && step.turn_rad < level.settled_rad) break;
     }
+    result.pixels = k.width * k.height;
     result.readings = k.readings;
     result.facing = k.facing;
     result.paired = k.paired;

@@ -23,12 +23,14 @@ struct CameraAlignInput {
   Pose start;  // T_view_camera to begin with
   CameraPrior prior;
   double gate_m = 0.1;  // at the coarsest level; halves with each
+  int finest = 0;       // level of the pyramid to end with
 };
 
 struct CameraAlignResult {
   Pose T_view_camera;
   bool solved = false;
-  int readings = 0;  // pixels of the finest level that was used
+  int pixels = 0;    // of the finest level that was used
+  int readings = 0;  // with depth
   int facing = 0;    // with a surface of the view before or behind them
   int paired = 0;    // with one in reach
   int inliers = 0;   // within three sigma

@@ -13,11 +13,11 @@ constexpr float kPace = 0.05f;
 
 }  // namespace
 
-CameraVerdict judge_camera(const CameraAlignResult& r, int pixels, const CameraHabit& habit) {
+CameraVerdict judge_camera(const CameraAlignResult& r, const CameraHabit& habit) {
   CameraVerdict v;
-  if (!r.solved || r.facing == 0 || pixels == 0) return v;
+  if (!r.solved || r.facing == 0) return v;
   v.explained = static_cast<float>(r.inliers) / static_cast<float>(r.facing);
-  v.paired = static_cast<float>(r.paired) / static_cast<float>(pixels);
+  v.paired = static_cast<float>(r.paired) / static_cast<float>(r.pixels);
   v.least_seen_m = least_seen_sigma_m(r.data_information, kTypicalDistance_m);
   const bool plausible =
       norm(r.T_view_camera.t) < kMostMove_m && rotation_angle(r.T_view_camera.R) < kMostTurn_rad;

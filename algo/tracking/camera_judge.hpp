@@ -18,8 +18,8 @@ struct CameraHabit {
   float explained = 0;  // running mean over good frames; 0: none yet
 };
 
-// `pixels`: of the whole image. The step from the prediction counts as well: a hand does not jump.
-CameraVerdict judge_camera(const CameraAlignResult& result, int pixels, const CameraHabit& habit);
+// The step from the prediction counts as well: a hand does not jump.
+CameraVerdict judge_camera(const CameraAlignResult& result, const CameraHabit& habit);
 
 void learn(CameraHabit& habit, const CameraVerdict& verdict);
 

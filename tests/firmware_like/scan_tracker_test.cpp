@@ -18,6 +18,8 @@ Calibration room_calibration() {
   c.depth = {kRoomCamera.width, kRoomCamera.height, kRoomCamera.fx,
              kRoomCamera.fy,    kRoomCamera.cx,     kRoomCamera.cy};
   c.encoding = DepthEncoding::kScaled16;
+  c.has_color = c.color_registered = true;
+  c.color = c.depth;
   return c;
 }
 
@@ -43,7 +45,8 @@ struct Hand {
     tracker.start();
   }
 
-  FrameReport see(std::span<const Wall> walls, const Pose& T_world_camera) {
+  FrameReport see(std::span<const Wall> walls, const Pose& T_world_camera, int level = 0) {
+    const LadderStep& step = ladder_step(level);
     const RoomFrame room(walls, T_world_camera);
     const ImageView<float>& z = room.depth.levels[0].z;
     std::vector<std::uint16_t> stored(static_cast<std::size_t>(z.pixels()));
@@ -52,16 +55,25 @@ struct Hand {
     FrameInput input;
     input.t_s = input.device_t_s = static_cast<double>(frames++) / 30;
     input.depth = {stored.data(), z.width, z.height};
+    const std::vector<std::uint8_t> grey(3 * stored.size() + 16, 90);
+    input.color = {grey.data(), 3 * z.width, z.height};
+    input.color_device_t_s = input.device_t_s;
     FrameReport report;
     tracker.preprocess(input, report);
     tracker.predict();
-    tracker.render();
-    tracker.align();
+    tracker.render(step);
+    tracker.align(step);
     tracker.judge();
-    tracker.integrate();
+    tracker.integrate(step);
     tracker.decide();
     tracker.publish(report);
     return report;
+  }
+
+  bool colored() const {
+    for (const std::uint32_t c : tracker.scene().color)
+      if (c != 0) return true;
+    return false;
   }
 
   ScanTracker tracker;
@@ -92,4 +104,28 @@ TEST(ScanTracker, TheWorldBeginsAtTheFirstFrameThatSeesEnough) {
   CHECK(hand.tracker.scene().extent_m() > 2);  // as far as the room goes
   CHECK(hand.see(kCorner, way(1)).camera.state == TrackState::kGood);
   UNSIGNED_LONGS_EQUAL(3, hand.tracker.count().lost);
+}
+
+TEST(ScanTracker, ALateFrameLeavesOutColourThenPixelsThenTheFusion) {
+  for (int i = 0; i < 6; ++i) hand.see(kCorner, way(i), 1);
+  CHECK(!hand.colored());
+  hand.see(kCorner, way(6), 0);
+  CHECK(hand.colored());
+
+  const double before = hand.tracker.count().pixels_aligned;
+  hand.see(kCorner, way(7), 1);
+  const double full = hand.tracker.count().pixels_aligned - before;
+  FrameReport report;
+  for (int i = 8; i < 18; ++i) report = hand.see(kCorner, way(i), 2);
+  const double halved = hand.tracker.count().pixels_aligned - before - full;
+  CHECK(halved / 10 < full / 2);
+  CHECK(report.camera.state == TrackState::kGood);
+  DOUBLES_EQUAL(0, norm(report.camera.T_world_camera.t - way(17).t), 0.004);
+
+  const std::uint32_t fused = hand.tracker.scene().integrations;
+  UNSIGNED_LONGS_EQUAL(18, fused);
+  for (int i = 18; i < 22; ++i) report = hand.see(kCorner, way(i), 3);
+  UNSIGNED_LONGS_EQUAL(fused, hand.tracker.scene().integrations);
+  CHECK(report.camera.state == TrackState::kGood);
+  DOUBLES_EQUAL(0, norm(report.camera.T_world_camera.t - way(21).t), 0.005);
 }

@@ -53,8 +53,7 @@ TEST(CameraAlign, AFlatWallSaysItsDistanceAndThatTheRestIsUnseen) {
   DOUBLES_EQUAL(0.02, r.T_view_camera.t.z, 1e-4);
   DOUBLES_EQUAL(0, r.T_view_camera.t.x, 1e-3);  // the prior holds it where it was expected
   CHECK(least_seen_sigma_m(r.data_information, 1.5) > 0.02);
-  const int pixels = kRoomCamera.width * kRoomCamera.height;
-  CHECK(judge_camera(r, pixels, {}).state == TrackState::kPoor);
+  CHECK(judge_camera(r, {}).state == TrackState::kPoor);
 }
 
 TEST(CameraAlign, TheAccelerometerHoldsTheTiltThatNothingElseSees) {
@@ -73,25 +72,24 @@ TEST(CameraAlign, NothingInSightIsLost) {
   const RoomFrame view(kCorner, Pose{}), empty(std::span<const Wall>{}, Pose{});
   const CameraAlignResult r = align_camera({empty.depth, view.view, kRoomCamera, Pose{}, {}});
   LONGS_EQUAL(0, r.readings);
-  CHECK(judge_camera(r, 320 * 240, {}).state == TrackState::kLost);
+  CHECK(judge_camera(r, {}).state == TrackState::kLost);
 }
 
 TEST(CameraAlign, TheJudgeKnowsAGoodPoseAndOneThatExplainsLessThanUsual) {
   CameraAlignResult r = aligned(kCorner, kMoved);
-  const int pixels = kRoomCamera.width * kRoomCamera.height;
   CameraHabit habit;
-  CameraVerdict v = judge_camera(r, pixels, habit);
+  CameraVerdict v = judge_camera(r, habit);
   CHECK(v.state == TrackState::kGood);
   learn(habit, v);
   DOUBLES_EQUAL(v.explained, habit.explained, 1e-6);
   r.inliers = static_cast<int>(0.7 * r.facing);
-  CHECK(judge_camera(r, pixels, habit).state == TrackState::kPoor);
+  CHECK(judge_camera(r, habit).state == TrackState::kPoor);
   r.inliers = static_cast<int>(0.3 * r.facing);
-  CHECK(judge_camera(r, pixels, habit).state == TrackState::kLost);
+  CHECK(judge_camera(r, habit).state == TrackState::kLost);
 }
 
 TEST(CameraAlign, AJumpIsNoPose) {
   CameraAlignResult r = aligned(kCorner, kMoved);
   r.T_view_camera.t.x += 0.5;
-  CHECK(judge_camera(r, kRoomCamera.width * kRoomCamera.height, {}).state == TrackState::kLost);
+  CHECK(judge_camera(r, {}).state == TrackState::kLost);
 }
