@@ -240,6 +240,7 @@ void ScanTracker::decide() {
   const bool good = camera_now_.state == TrackState::kGood;
   ++(good ? count_.tracked : count_.lost);
   count_.good_at_end = good;
+  if (good) last_good_t_s_ = input_->t_s;
 }
 
 void ScanTracker::follow() {
@@ -265,8 +266,7 @@ void ScanTracker::follow() {
 
 void ScanTracker::lose() {
   search();
-  lost_t_s_ = input_->t_s;
-  log(EventKind::kLost, camera_now_.inliers);
+  log(EventKind::kLost, input_->t_s - last_good_t_s_);
 }
 
 void ScanTracker::search() {
@@ -290,7 +290,7 @@ void ScanTracker::prove() {
   }
   course_ = Course::kFollowing;
   poor_run_ = 0;
-  log(EventKind::kRecovered, input_->t_s - lost_t_s_);
+  log(EventKind::kRecovered, input_->t_s - last_good_t_s_);
 }
 
 void ScanTracker::learn_up() {

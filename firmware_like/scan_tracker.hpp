@@ -104,7 +104,7 @@ class ScanTracker {
   bool has_lead_ = false;  // the last try came nearer
   Pose T_world_lead_;      // where it led
   float lead_explained_ = 0;
-  double lost_t_s_ = 0;
+  double last_good_t_s_ = 0;
   bool outside_ = false;  // most of what the camera sees lies outside of the volume
   FixedVector<Event, 8> events_;
   CameraEnd count_;

@@ -129,3 +129,17 @@ TEST(ScanTracker, ALateFrameLeavesOutColourThenPixelsThenTheFusion) {
   CHECK(report.camera.state == TrackState::kGood);
   DOUBLES_EQUAL(0, norm(report.camera.T_world_camera.t - way(21).t), 0.005);
 }
+
+TEST(ScanTracker, LostAndRecoveredTellTheTimeWithoutAPose) {
+  for (int i = 0; i < 10; ++i) hand.see(kCorner, way(i));
+  const FrameReport lost = hand.see(std::span<const Wall>{}, way(10));
+  LONGS_EQUAL(1, lost.events.size());
+  CHECK(lost.events[0].kind == EventKind::kLost);
+  DOUBLES_EQUAL(1.0 / 30, lost.events[0].a, 1e-9);
+  for (int i = 0; i < 4; ++i) hand.see(std::span<const Wall>{}, way(10));
+  FrameReport report;
+  for (int i = 0; i < 12 && report.events.empty(); ++i) report = hand.see(kCorner, way(10));
+  CHECK(report.events.size() == 1 && report.events[0].kind == EventKind::kRecovered);
+  CHECK(report.camera.state == TrackState::kGood);
+  DOUBLES_EQUAL(report.events[0].t_s - 9.0 / 30, report.events[0].a, 1e-9);
+}
