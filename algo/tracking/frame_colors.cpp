@@ -7,8 +7,9 @@ namespace st {
 bool frame_colors(const Calibration& calibration, const ColorImage& image, const PoseF& motion,
                   ImageView<const float> depth_z, const Pinhole& camera, ImageView<std::uint32_t> color) {
   const bool registered = calibration.color_registered;
+  // Registered colour stands in the depth camera's pixels, with that one's distortion.
   const Intrinsics& lens = registered ? calibration.depth : calibration.color;
-  if (lens.distorted() || image.rgb.width != 3 * lens.width || image.rgb.height != lens.height) return false;
+  if (image.rgb.width != 3 * lens.width || image.rgb.height != lens.height) return false;
   FrameColorsKernel k{};
   k.z = depth_z.data;
   k.width = depth_z.width;
@@ -29,6 +30,8 @@ bool frame_colors(const Calibration& calibration, const ColorImage& image, const
   k.color_fy = static_cast<float>(lens.fy);
   k.color_cx = static_cast<float>(lens.cx);
   k.color_cy = static_cast<float>(lens.cy);
+  k.distorted = lens.distorted();
+  for (int i = 0; i < 5; ++i) k.k[i] = static_cast<float>(lens.k[i]);
   k.out = color.data;
   sample_colors(k);
   return true;

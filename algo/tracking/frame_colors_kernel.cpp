@@ -19,6 +19,20 @@ using M = hn::Mask<D>;
 
 constexpr std::uint32_t kKnown = 255u << 24;
 
+// distort() of calibration.hpp, for a vector of rays (x, y, 1).
+HWY_INLINE void distort_rays(D d, const float (&k)[5], V& x, V& y) {
+  const V xx = hn::Mul(x, x), yy = hn::Mul(y, y), xy = hn::Mul(x, y), r2 = hn::Add(xx, yy);
+  const V inner = hn::MulAdd(r2, hn::MulAdd(r2, hn::Set(d, k[4]), hn::Set(d, k[1])), hn::Set(d, k[0]));
+  const V radial = hn::MulAdd(r2, inner, hn::Set(d, 1.0f));
+  const V two_xy = hn::Add(xy, xy);
+  const V across =
+      hn::MulAdd(hn::Set(d, k[2]), two_xy, hn::Mul(hn::Set(d, k[3]), hn::Add(r2, hn::Add(xx, xx))));
+  const V down =
+      hn::MulAdd(hn::Set(d, k[3]), two_xy, hn::Mul(hn::Set(d, k[2]), hn::Add(r2, hn::Add(yy, yy))));
+  x = hn::MulAdd(x, radial, across);
+  y = hn::MulAdd(y, radial, down);
+}
+
 void colors(const FrameColorsKernel& k) {
   const D d;
   const DI di;
@@ -40,8 +54,10 @@ void colors(const FrameColorsKernel& k) {
       const M before =
           hn::And(hn::And(hn::FirstN(d, left), hn::Gt(z, hn::Zero(d))), hn::Gt(p[2], hn::Set(d, 0.05f)));
       const V per_z = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(before, p[2], hn::Set(d, 1.0f)));
-      const V fu = hn::MulAdd(hn::Mul(p[0], per_z), hn::Set(d, k.color_fx), hn::Set(d, k.color_cx + 0.5f));
-      const V fv = hn::MulAdd(hn::Mul(p[1], per_z), hn::Set(d, k.color_fy), hn::Set(d, k.color_cy + 0.5f));
+      V x = hn::Mul(p[0], per_z), y = hn::Mul(p[1], per_z);
+      if (k.distorted) distort_rays(d, k.k, x, y);
+      const V fu = hn::MulAdd(x, hn::Set(d, k.color_fx), hn::Set(d, k.color_cx + 0.5f));
+      const V fv = hn::MulAdd(y, hn::Set(d, k.color_fy), hn::Set(d, k.color_cy + 0.5f));
       // A pixel is read as four bytes: the last one of the image would reach beyond it.
       const M across =
           hn::And(hn::Ge(fu, hn::Zero(d)), hn::Lt(fu, hn::Set(d, static_cast<float>(k.color_width - 1))));

@@ -13,6 +13,8 @@ struct FrameColorsKernel {
   const std::uint8_t* rgb;
   int color_width, color_height;
   float color_fx, color_fy, color_cx, color_cy;
+  bool distorted;
+  float k[5];          // Brown-Conrady k1 k2 p1 p2 k3, see distort(); read when distorted
   std::uint32_t* out;  // width x height
 };
 

@@ -1,5 +1,8 @@
 #include "algo/tracking/frame_colors.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "algo/volume/voxel.hpp"
@@ -61,11 +64,32 @@ TEST(FrameColors, ACameraBesideShiftsByItsParallaxAndMotionAddsToIt) {
   UNSIGNED_LONGS_EQUAL(7, green_of(f.at(10, 4)));
 }
 
-TEST(FrameColors, AnotherSizeOrALensWithDistortionIsRefused) {
+TEST(FrameColors, AnImageOfAnotherSizeIsRefused) {
   f.calibration.color.width = kW + 1;
   CHECK(!f.take());
-  f.calibration.color.width = kW;
-  f.calibration.color.k[0] = 0.1;
-  CHECK(!f.take());
   UNSIGNED_LONGS_EQUAL(7, f.at(0, 0));
+}
+
+TEST(FrameColors, ALensWithDistortionIsLookedThroughWhereItBendsTheRay) {
+  const double bent[] = {0.2, -0.3, 0.02, -0.015, 0.1};
+  const auto check = [&](Intrinsics& lens) {
+    std::copy(std::begin(bent), std::end(bent), lens.k);
+    CHECK(f.take());
+    int moved = 0;
+    for (int v = 0; v < kH; ++v)
+      for (int u = 0; u < kW; ++u) {
+        const Normalized at = distort(lens, {(u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy});
+        const double cu = at.x * lens.fx + lens.cx + 0.5, cv = at.y * lens.fy + lens.cy + 0.5;
+        // Not where rounding decides: on a pixel's edge, and at that of the image.
+        const auto near_edge = [](double c) { return std::fabs(c - std::round(c)) < 1e-3; };
+        if (near_edge(cu) || near_edge(cv) || cu < 0 || cv < 0 || cu >= kW - 1 || cv >= kH) continue;
+        LONGS_EQUAL(static_cast<int>(cu), red_of(f.at(u, v)));
+        LONGS_EQUAL(static_cast<int>(cv), green_of(f.at(u, v)));
+        moved += static_cast<int>(cu) != u ? 1 : 0;
+      }
+    CHECK(moved > kW);
+  };
+  check(f.calibration.color);
+  f.calibration.color_registered = true;
+  check(f.calibration.depth);
 }
