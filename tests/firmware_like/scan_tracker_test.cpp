@@ -23,10 +23,11 @@ Calibration room_calibration() {
   return c;
 }
 
-LoopConfig room_config() {
+LoopConfig room_config(double extent_m) {
   LoopConfig config;
   config.mode = Mode::kScan;
   config.volume_side = 128;
+  config.place.extent_m = extent_m;
   return config;
 }
 
@@ -35,7 +36,7 @@ Pose way(int frame) { return {rotation_from_vector({0, 0.003 * frame, 0}), {0.00
 
 // A tracker and the camera that it follows through the room.
 struct Hand {
-  Hand() : tracker(room_calibration(), room_config()) {
+  explicit Hand(double extent_m = 0) : tracker(room_calibration(), room_config(extent_m)) {
     tracker.plan_memory(plan);
     memory.resize(plan.bytes() + Bump::kAlign);
     void* start = memory.data();
@@ -128,6 +129,41 @@ TEST(ScanTracker, ALateFrameLeavesOutColourThenPixelsThenTheFusion) {
   UNSIGNED_LONGS_EQUAL(fused, hand.tracker.scene().integrations);
   CHECK(report.camera.state == TrackState::kGood);
   DOUBLES_EQUAL(0, norm(report.camera.T_world_camera.t - way(21).t), 0.005);
+}
+
+// Far from where it was lost, at a place that it knows.
+TEST(ScanTracker, ALostCameraIsFoundAtAPlaceWhereItHasBeen) {
+  int i = 0;
+  for (; i < 100; ++i) hand.see(kCorner, way(i));
+  for (int k = 0; k < 3; ++k) hand.see(std::span<const Wall>{}, way(i));
+  FrameReport report;
+  for (int k = 0; k < 10; ++k) report = hand.see(kCorner, way(12));
+  CHECK(report.camera.state == TrackState::kGood);
+  DOUBLES_EQUAL(0, norm(report.camera.T_world_camera.t - way(12).t), 0.005);
+}
+
+// A small volume: turned aside the camera looks out of it, turned down to the floor it looks into it.
+TEST(ScanTracker, TheBorderOfTheVolumeIsToldEachTimeItIsLeft) {
+  Hand small(2.2);
+  int told = 0;
+  const auto turn = [&](const Vec3& axis, double from_rad, double to_rad) {
+    for (int i = 0; i < 20; ++i) {
+      const double angle = from_rad + (to_rad - from_rad) * i / 20;
+      for (const Event& event : small.see(kCorner, {rotation_from_vector(axis * angle), {}}).events) {
+        CHECK(event.kind == EventKind::kVolumeLeft);
+        CHECK(event.a > 0.6 && event.a < 0.65);
+        ++told;
+      }
+    }
+  };
+  const Vec3 aside{0, 1, 0}, down{-1, 0, 0};
+  turn(aside, 0, 0.26);
+  LONGS_EQUAL(1, told);
+  turn(aside, 0.26, 0);
+  turn(down, 0, 0.3);
+  turn(down, 0.3, 0);
+  turn(aside, 0, 0.26);
+  LONGS_EQUAL(2, told);
 }
 
 TEST(ScanTracker, LostAndRecoveredTellTheTimeWithoutAPose) {

@@ -1,5 +1,7 @@
 #include "algo/tracking/places.hpp"
 
+#include <algorithm>
+
 #include "algo/tracking/camera_motion.hpp"
 #include "tests/algo/tracking/corner_room.hpp"
 
@@ -43,6 +45,9 @@ TEST(Places, AViewFromNearlyTheSamePlaceIsKeptOnce) {
   places.remember(Pose{}, seen.depth.levels[0].z);
   places.remember(turned(0.05), seen.depth.levels[0].z);
   UNSIGNED_LONGS_EQUAL(1, places.size());
+  places.remember(turned(0.25), seen.depth.levels[0].z);
+  places.remember(turned(0, 0.2), seen.depth.levels[0].z);
+  UNSIGNED_LONGS_EQUAL(3, places.size());
 }
 
 TEST(Places, TheOldestMakesRoom) {
@@ -50,6 +55,16 @@ TEST(Places, TheOldestMakesRoom) {
   for (std::size_t i = 0; i < Places::kMost + 3; ++i)
     places.remember(turned(0, 0.2 * static_cast<double>(i)), seen.depth.levels[2].z);
   UNSIGNED_LONGS_EQUAL(Places::kMost, places.size());
+  // All look the same: their order does not matter, who is there does.
+  const Thumbnail any = thumbnail_of(seen.depth.levels[2].z);
+  double nearest = 1e9, farthest = 0;
+  for (std::size_t rank = 0; rank < places.size(); ++rank) {
+    const double ahead = places.like(any, rank).T_world_camera.t.z;
+    nearest = std::min(nearest, ahead);
+    farthest = std::max(farthest, ahead);
+  }
+  DOUBLES_EQUAL(0.2 * 3, nearest, 1e-9);
+  DOUBLES_EQUAL(0.2 * (Places::kMost + 2), farthest, 1e-9);
 }
 
 TEST(Places, NothingSeenIsLikeNothing) {

@@ -162,6 +162,58 @@ TEST(Raycast, AGuessNearTheSurfaceFindsWhatTheMarchFinds) {
   CHECK(elsewhere < both / 25);     // an eighth of a voxel off, at grazing rays
 }
 
+TEST(Raycast, OnlyWhatIsNearItsGuessIsLookedFor) {
+  const Sphere ball(0.12);
+  const View view = fuse_turns(ball, 12);
+  const Pose T = view.T_camera_object;
+  cast(view, T, view.camera);
+  const std::vector<float> marched(bench.maps.z.begin(), bench.maps.z.end());
+  const Rect roi = bench.maps.roi;
+  // By stripe: right, none, within reach before and behind, out of reach before and behind.
+  const float reach = kGuessReach * bench.volume.truncation_m;
+  const auto stripe = [](int u) { return u / 12 % 6; };
+  const float off[] = {0, 0, -0.8f * reach, 0.8f * reach, -1.3f * reach, 1.3f * reach};
+  std::vector<float> guess(view.depth.size() + 16);
+  for (int v = roi.v0; v < roi.v1; ++v)
+    for (int u = roi.u0; u < roi.u1; ++u) {
+      const float z = marched[bench.maps.at(u, v)];
+      if (z > 0 && stripe(u) != 1) guess[static_cast<std::size_t>(v * view.camera.width + u)] = z + off[stripe(u)];
+    }
+  RaycastOptions options;
+  options.guess = {guess.data(), view.camera.width, view.camera.height};
+  raycast(bench.volume, view.camera, roi, T, bench.raycasting, bench.maps, options);
+  int there[6]{}, found[6]{};
+  for (int v = roi.v0; v < roi.v1; ++v)
+    for (int u = roi.u0; u < roi.u1; ++u) {
+      there[stripe(u)] += marched[bench.maps.at(u, v)] > 0 ? 1 : 0;
+      found[stripe(u)] += bench.maps.z[bench.maps.at(u, v)] > 0 ? 1 : 0;
+    }
+  for (const int i : {0, 2, 3}) CHECK(found[i] > 0.9 * there[i]);
+  for (const int i : {1, 4, 5}) LONGS_EQUAL(0, found[i]);
+}
+
+// One noisy frame is all the model, and its noise would come back as slopes.
+TEST(Raycast, AYoungModelsNormalsAreFittedWiderAndAnOldOnesAreNot) {
+  const Sphere ball(0.12);
+  how.noise = 2;
+  RaycastOptions smooth;
+  smooth.smooth_young = true;
+  const auto mean_angle = [&](const View& view, const RaycastOptions& options) {
+    raycast(bench.volume, view.camera, visible_rect(bench.volume, view.camera, view.T_camera_object),
+            view.T_camera_object, bench.raycasting, bench.maps, options);
+    return compare(bench, ball, view.T_camera_object, view.camera).mean_angle;
+  };
+  View view = render(ball, looking_at(0.9, 0, 0.3), how, random);
+  bench.fuse(view);
+  CHECK(mean_angle(view, smooth) < 0.85 * mean_angle(view, {}));
+  for (int i = 0; i < 40; ++i) {
+    view = render(ball, looking_at(0.9, 0, 0.3), how, random);
+    bench.fuse(view);
+  }
+  const double narrow = mean_angle(view, {});
+  DOUBLES_EQUAL(narrow, mean_angle(view, smooth), 0.1 * narrow);
+}
+
 TEST(Raycast, TheUnseenBackOfAModelIsNotShown) {
   const Sphere ball(0.12);
   const View view = render(ball, looking_at(0.9, 0, 0.3), how, random);
