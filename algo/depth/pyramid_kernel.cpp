@@ -1,5 +1,7 @@
 #include "algo/depth/pyramid_kernel.hpp"
 
+#include "algo/depth/edge_step.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algo/depth/pyramid_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -11,7 +13,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float kNothing = 1e9f;
-constexpr float kStep_m = 0.015f, kStepPerSquare = 0.012f;  // a step in depth larger than noise and slope
 
 // Any width of vector, also one lane for the end of a row: the same arithmetic.
 template <class D, class V = hn::Vec<D>>
@@ -20,8 +21,9 @@ HWY_INLINE V mean_of_surface(D d, V a, V b, V c, V e) {
   const auto or_far = [&](V x) HWY_ATTR { return hn::IfThenElse(hn::Gt(x, zero), x, far); };
   const V four[4] = {or_far(a), or_far(b), or_far(c), or_far(e)};
   const V nearest = hn::Min(hn::Min(four[0], four[1]), hn::Min(four[2], four[3]));
-  const V limit = hn::Add(
-      nearest, hn::Add(hn::Set(d, kStep_m), hn::Mul(hn::Set(d, kStepPerSquare), hn::Mul(nearest, nearest))));
+  const V limit =
+      hn::Add(nearest, hn::Add(hn::Set(d, kEdgeStep_m),
+                               hn::Mul(hn::Set(d, kEdgeStepPerSquare_per_m), hn::Mul(nearest, nearest))));
   V sum = zero, count = zero;
   for (const V& x : four) {
     const auto same = hn::And(hn::Lt(x, far), hn::Le(x, limit));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "algo/depth/edge_step.hpp"
 #include "algo/tracking/observe.hpp"
 
 namespace st {

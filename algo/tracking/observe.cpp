@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "algo/depth/edge_step.hpp"
+
 namespace st {
 
 namespace {

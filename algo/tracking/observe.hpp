@@ -26,9 +26,6 @@ std::size_t gather_near_view(ImageView<const float> depth_z, ImageView<const std
                              std::uint8_t owner, const ModelView& view, const Pinhole& camera,
                              std::span<ObservedPoint> out);
 
-// A step in depth larger than noise and slope.
-inline float edge_step_m(float z_m) { return 0.015f + 0.012f * z_m * z_m; }
-
 // Pixels of an object near its outline: the sensor's window has drawn it wider than it is. They are the
 // object's, but say nothing of its shape.
 inline constexpr std::uint8_t kEdge = 254;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "algo/core/scalar_math.hpp"
+#include "algo/depth/edge_step.hpp"
 #include "algo/tracking/observe.hpp"
 
 namespace st {

@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include "algo/depth/edge_step.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace st {
 namespace HWY_NAMESPACE {
@@ -19,10 +21,10 @@ using D = hn::CappedTag<float, 8>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
-// A step between surfaces, seen over two pixels: above what noise and slopes up to about 75 degrees make.
-// `scale`: coarse().
+// edge_step_m(). `scale`: coarse().
 HWY_INLINE V gap_of(D d, V z, float scale) {
-  return hn::Mul(hn::Set(d, scale), hn::Add(hn::Set(d, 0.015f), hn::Mul(hn::Set(d, 0.012f), hn::Mul(z, z))));
+  return hn::Mul(hn::Set(d, scale), hn::Add(hn::Set(d, kEdgeStep_m),
+                                            hn::Mul(hn::Set(d, kEdgeStepPerSquare_per_m), hn::Mul(z, z))));
 }
 // How much coarser a camera's pixels are than a Kinect's.
 HWY_INLINE float coarse(float fx) { return fx < 575.0f ? 575.0f / fx : 1.0f; }
