@@ -53,15 +53,7 @@ void add_floor_prior(const AlignInput& in, const Pose& T, NormalEquations& eq) {
   const double Jh[6] = {n.x, n.y, n.z, turn.x, turn.y, turn.z};
   eq.add(Jh, height, 1.0 / (floor.sigma_height_m * floor.sigma_height_m));
 
-  // Two level directions a, b with a x b = n: the object's up axis leans by dR u - n = w x n.
-  const Vec3 helper = std::fabs(n.x) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 a = normalized(cross(helper, n)), b = cross(n, a);
-  const Vec3 lean = T.R * floor.up_object - n;
-  const double w = 1.0 / (floor.sigma_tilt_rad * floor.sigma_tilt_rad);
-  const double Ja[6] = {0, 0, 0, b.x, b.y, b.z};
-  const double Jb[6] = {0, 0, 0, -a.x, -a.y, -a.z};
-  eq.add(Ja, dot(lean, a), w);
-  eq.add(Jb, dot(lean, b), w);
+  eq.add_lean(n, T.R * floor.up_object, floor.sigma_tilt_rad);
 }
 
 // Chords of neighbouring frames overlap: so many say as much as one.
@@ -83,15 +75,10 @@ void add_shift_prior(const double (&shift_px)[2], NormalEquations& eq) {
   }
 }
 
-void copy_pose_block(const double (&full)[kN * kN], double (&pose)[36]) {
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) pose[6 * i + j] = full[kN * i + j];
-}
-
 // Information about the pose once the image shift is marginalised out (Schur complement of the last two
 // unknowns).
 void marginal_information(const NormalEquations& eq, double (&pose)[36]) {
-  copy_pose_block(eq.H, pose);
+  eq.copy_pose_block(pose);
   const double a = eq.H[6 * kN + 6], b = eq.H[6 * kN + 7], d = eq.H[7 * kN + 7];
   const double det = a * d - b * b;
   if (!(det > 1e-12)) return;
@@ -107,10 +94,9 @@ void marginal_information(const NormalEquations& eq, double (&pose)[36]) {
 // be off by so many of its own sigmas.
 constexpr double kOwnTurn = 3.0;
 
-double own_turn_rad(NormalEquations shape, const PoseTie& axes) {
-  shape.mirror();
+double own_turn_rad(const NormalEquations& shape, const PoseTie& axes) {
   double information[36];
-  copy_pose_block(shape.H, information);
+  shape.copy_pose_block(information);
   return kOwnTurn * turn_sigma_rad(information, axes.R_frame_camera.transposed() * Vec3{0, 0, 1});
 }
 
@@ -219,9 +205,8 @@ AlignResult align_again(const AlignInput& in, AlignScratch& scratch) {
   data = shape;
   data.add(colour);
   add_shift_prior(shift_px, data);
-  shape.mirror();
   data.mirror();
-  copy_pose_block(shape.H, result.shape_information);
+  shape.copy_pose_block(result.shape_information);
   marginal_information(data, result.data_information);
   double marginal[36];
   marginal_information(all, marginal);

@@ -70,15 +70,7 @@ void add_prior(const CameraPrior& prior, const Pose& T, NormalEquations& eq) {
     eq.add(Jw, turned[a], 1.0 / (prior.sigma_rad * prior.sigma_rad));
   }
   if (!prior.has_up) return;
-  // The frame's up, turned into the view, leans away from the view's by w x up.
-  const Vec3 n = prior.up_view;
-  const Vec3 helper = std::fabs(n.x) < 0.8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 a = normalized(cross(helper, n)), b = cross(n, a);
-  const Vec3 lean = T.R * prior.up_frame - n;
-  const double w = 1.0 / (prior.sigma_up_rad * prior.sigma_up_rad);
-  const double Ja[6] = {0, 0, 0, b.x, b.y, b.z}, Jb[6] = {0, 0, 0, -a.x, -a.y, -a.z};
-  eq.add(Ja, dot(lean, a), w);
-  eq.add(Jb, dot(lean, b), w);
+  eq.add_lean(prior.up_view, T.R * prior.up_frame, prior.sigma_up_rad);
 }
 
 struct Step {
@@ -89,11 +81,8 @@ struct Step {
 
 Step solve(const NormalEquations& eq) {
   double A[36], b[6], x[6];
-  for (int i = 0; i < 6; ++i) {
-    b[i] = -eq.g[i];
-    for (int j = 0; j < 6; ++j)
-      A[6 * i + j] = eq.H[NormalEquations::kSize * (i < j ? i : j) + (i < j ? j : i)];
-  }
+  eq.copy_pose_block(A);
+  for (int i = 0; i < 6; ++i) b[i] = -eq.g[i];
   Step step;
   step.solved = solve_spd(A, b, x, 6);
   if (!step.solved) return step;
@@ -123,9 +112,7 @@ CameraAlignResult align_camera(const CameraAlignInput& in) {
       for (double& x : k.gradient) x *= information;
       NormalEquations eq;
       eq.add_sums(k.triangle, k.gradient, NormalEquations::kPose);
-      eq.mirror();
-      for (int r = 0; r < 6; ++r)
-        for (int c = 0; c < 6; ++c) result.data_information[6 * r + c] = eq.H[NormalEquations::kSize * r + c];
+      eq.copy_pose_block(result.data_information);
       add_prior(in.prior, T, eq);
       const Step step = solve(eq);
       result.solved = step.solved;
