@@ -7,6 +7,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "algo/tracking/point_plane-inl.hpp"
+#include "algo/tracking/sums-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace st {
 namespace HWY_NAMESPACE {
@@ -17,18 +20,17 @@ using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 using VI = hn::Vec<DI>;
 using M = hn::Mask<D>;
+using Vec = sums::VecOf<V>;
 
 constexpr int kRows = 4;  // of the image between two emptyings of the float sums into double ones
-
-HWY_INLINE double sum(D d, V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); }
 
 // What the rows of the Jacobian need of the present pixels: the point and the normal of its partner, and the
 // residual along it.
 struct Pairs {
-  V x, y, z;     // the point, view frame
-  V nx, ny, nz;  // of the surface
-  V r;           // n . (p - q), metres
-  V sigma;       // axial noise of a reading at that depth
+  Vec p;    // the point, view frame
+  Vec n;    // normal of the surface
+  V r;      // n . (p - q), metres
+  V sigma;  // axial noise of a reading at that depth
   M on;
 };
 
@@ -41,13 +43,13 @@ HWY_INLINE Pairs pair_pixels(D d, CameraKernel& k, const float* row, int u, cons
   const M has = hn::And(in_row, hn::Gt(depth, hn::Zero(d)));
   k.readings += static_cast<int>(hn::CountTrue(d, has));
   const V rx = hn::Mul(hn::Sub(hn::Iota(d, static_cast<float>(u)), hn::Set(d, k.cx)), hn::Set(d, k.per_fx));
-  o.x = hn::MulAdd(hn::MulAdd(along_x[0], rx, origin[0]), depth, hn::Set(d, k.t[0]));
-  o.y = hn::MulAdd(hn::MulAdd(along_x[1], rx, origin[1]), depth, hn::Set(d, k.t[1]));
-  o.z = hn::MulAdd(hn::MulAdd(along_x[2], rx, origin[2]), depth, hn::Set(d, k.t[2]));
-  const M before = hn::And(has, hn::Gt(o.z, hn::Set(d, 0.1f)));
-  const V per_z = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(before, o.z, hn::Set(d, 1.0f)));
-  const V pu = hn::MulAdd(hn::Mul(o.x, per_z), hn::Set(d, k.view_fx), hn::Set(d, k.view_cx + 0.5f));
-  const V pv = hn::MulAdd(hn::Mul(o.y, per_z), hn::Set(d, k.view_fy), hn::Set(d, k.view_cy + 0.5f));
+  o.p.x = hn::MulAdd(hn::MulAdd(along_x[0], rx, origin[0]), depth, hn::Set(d, k.t[0]));
+  o.p.y = hn::MulAdd(hn::MulAdd(along_x[1], rx, origin[1]), depth, hn::Set(d, k.t[1]));
+  o.p.z = hn::MulAdd(hn::MulAdd(along_x[2], rx, origin[2]), depth, hn::Set(d, k.t[2]));
+  const M before = hn::And(has, hn::Gt(o.p.z, hn::Set(d, 0.1f)));
+  const V per_z = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(before, o.p.z, hn::Set(d, 1.0f)));
+  const V pu = hn::MulAdd(hn::Mul(o.p.x, per_z), hn::Set(d, k.view_fx), hn::Set(d, k.view_cx + 0.5f));
+  const V pv = hn::MulAdd(hn::Mul(o.p.y, per_z), hn::Set(d, k.view_fy), hn::Set(d, k.view_cy + 0.5f));
   // Comparisons are false for NaN, and the index is made only where they hold.
   const M across = hn::And(hn::Ge(pu, hn::Zero(d)), hn::Lt(pu, hn::Set(d, static_cast<float>(k.view_width))));
   const M down = hn::And(hn::Ge(pv, hn::Zero(d)), hn::Lt(pv, hn::Set(d, static_cast<float>(k.view_height))));
@@ -57,48 +59,24 @@ HWY_INLINE Pairs pair_pixels(D d, CameraKernel& k, const float* row, int u, cons
   const VI at = hn::Add(hn::Mul(iv, hn::Set(di, k.view_stride)), iu);
   const V qz = hn::GatherIndex(d, k.view_z, at);
   const V gx = hn::NegMulAdd(
-      hn::Mul(hn::Sub(hn::ConvertTo(d, iu), hn::Set(d, k.view_cx)), hn::Set(d, 1.0f / k.view_fx)), qz, o.x);
+      hn::Mul(hn::Sub(hn::ConvertTo(d, iu), hn::Set(d, k.view_cx)), hn::Set(d, 1.0f / k.view_fx)), qz, o.p.x);
   const V gy = hn::NegMulAdd(
-      hn::Mul(hn::Sub(hn::ConvertTo(d, iv), hn::Set(d, k.view_cy)), hn::Set(d, 1.0f / k.view_fy)), qz, o.y);
-  const V gz = hn::Sub(o.z, qz);
+      hn::Mul(hn::Sub(hn::ConvertTo(d, iv), hn::Set(d, k.view_cy)), hn::Set(d, 1.0f / k.view_fy)), qz, o.p.y);
+  const V gz = hn::Sub(o.p.z, qz);
   const V distance2 = hn::MulAdd(gx, gx, hn::MulAdd(gy, gy, hn::Mul(gz, gz)));
-  o.sigma = hn::MulAdd(hn::Mul(o.z, o.z), hn::Set(d, kDepthSigmaPerSquare), hn::Set(d, kLeastDepthSigma_m));
-  const V reach2 = hn::MulAdd(hn::Mul(o.sigma, o.sigma), hn::Set(d, 16.0f), hn::Set(d, k.gate2_m2));
+  o.sigma = point_plane::axial_sigma(d, o.p.z);
   const M facing = hn::And(inside, hn::Gt(qz, hn::Zero(d)));
   k.facing += static_cast<int>(hn::CountTrue(d, facing));
-  o.on = hn::And(facing, hn::Le(distance2, reach2));
+  o.on = hn::And(facing, point_plane::in_reach(d, distance2, o.sigma, k.gate2_m2));
   const VI packed = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(k.view_normal), at);
   const V unit = hn::Set(d, 1.0f / kNormalScale);
-  o.nx = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(packed))), unit);
-  o.ny = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(packed)), unit);
-  const V rest = hn::NegMulAdd(o.nx, o.nx, hn::NegMulAdd(o.ny, o.ny, hn::Set(d, 1.0f)));
-  o.nz = hn::Neg(hn::Sqrt(hn::Max(rest, hn::Zero(d))));
-  o.r = hn::IfThenElseZero(o.on, hn::MulAdd(o.nx, gx, hn::MulAdd(o.ny, gy, hn::Mul(o.nz, gz))));
+  o.n.x = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(packed))), unit);
+  o.n.y = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(packed)), unit);
+  const V rest = hn::NegMulAdd(o.n.x, o.n.x, hn::NegMulAdd(o.n.y, o.n.y, hn::Set(d, 1.0f)));
+  o.n.z = hn::Neg(hn::Sqrt(hn::Max(rest, hn::Zero(d))));
+  o.r = hn::IfThenElseZero(o.on, hn::MulAdd(o.n.x, gx, hn::MulAdd(o.n.y, gy, hn::Mul(o.n.z, gz))));
   return o;
 }
-
-struct Sums {
-  V h[21], g[6], square;
-  HWY_INLINE void clear(D d) {
-    for (V& v : h) v = hn::Zero(d);
-    for (V& v : g) v = hn::Zero(d);
-    square = hn::Zero(d);
-  }
-  HWY_INLINE void add(const V (&J)[6], V r, V w) {
-    int k = 0;
-    for (int i = 0; i < 6; ++i) {
-      const V wJ = hn::Mul(w, J[i]);
-      g[i] = hn::MulAdd(wJ, r, g[i]);
-      for (int j = i; j < 6; ++j, ++k) h[k] = hn::MulAdd(wJ, J[j], h[k]);
-    }
-  }
-  HWY_INLINE void empty_into(D d, CameraKernel& k) {
-    for (int i = 0; i < 21; ++i) k.triangle[i] += sum(d, h[i]);
-    for (int i = 0; i < 6; ++i) k.gradient[i] += sum(d, g[i]);
-    k.square_sum += sum(d, square);
-    clear(d);
-  }
-};
 
 void camera_sums(CameraKernel& work) {
   // A copy that no store through a pointer can change: its values stay in registers.
@@ -106,8 +84,9 @@ void camera_sums(CameraKernel& work) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const V half_pixel = hn::Set(d, 0.5f / k.view_fx);
-  Sums sums;
-  sums.clear(d);
+  V square = hn::Zero(d);
+  sums::SumsOf<D, 6> all;
+  all.clear(d);
   for (int v = 0; v < k.height; ++v) {
     const float* row = k.z + static_cast<std::ptrdiff_t>(v) * k.width;
     const float ry = (static_cast<float>(v) - k.cy) * k.per_fy;
@@ -119,27 +98,22 @@ void camera_sums(CameraKernel& work) {
       const Pairs p = pair_pixels(d, k, row, u, origin, along_x);
       if (hn::AllFalse(d, p.on)) continue;
       k.paired += static_cast<int>(hn::CountTrue(d, p.on));
-      // Axial noise seen along the normal, plus what a pixel's width leaves open sideways.
-      const V axial = hn::Mul(p.sigma, p.nz), lateral = hn::Mul(half_pixel, p.z);
-      const V per_variance = hn::Div(hn::Set(d, 1.0f), hn::MulAdd(axial, axial, hn::Mul(lateral, lateral)));
-      const V r2 = hn::Mul(p.r, p.r), s2 = hn::Mul(r2, per_variance);
-      const M inlier = hn::And(p.on, hn::Lt(s2, hn::Set(d, 9.0f)));
-      k.inliers += static_cast<int>(hn::CountTrue(d, inlier));
-      sums.square = hn::Add(sums.square, hn::IfThenElseZero(inlier, r2));
-      const V keep = hn::Max(hn::NegMulAdd(s2, hn::Set(d, 1.0f / k.robust2), hn::Set(d, 1.0f)), hn::Zero(d));
-      const V w = hn::IfThenElseZero(p.on, hn::Mul(hn::Mul(keep, keep), per_variance));
+      const auto weighed = point_plane::weigh(d, p.r, p.n.z, p.p.z, p.sigma, half_pixel, k.robust2, p.on);
+      const V w =
+          hn::IfThenElseZero(p.on, hn::Mul(hn::Mul(weighed.keep, weighed.keep), weighed.per_variance));
       // d r / d (v, w) for p' = p + v + w x p.
-      const V J[6] = {p.nx,
-                      p.ny,
-                      p.nz,
-                      hn::MulSub(p.y, p.nz, hn::Mul(p.z, p.ny)),
-                      hn::MulSub(p.z, p.nx, hn::Mul(p.x, p.nz)),
-                      hn::MulSub(p.x, p.ny, hn::Mul(p.y, p.nx))};
-      sums.add(J, p.r, w);
+      const Vec moment = sums::crossed(p.p, p.n);
+      const V J[6] = {p.n.x, p.n.y, p.n.z, moment.x, moment.y, moment.z};
+      k.inliers += static_cast<int>(hn::CountTrue(d, weighed.inlier));
+      square = hn::Add(square, hn::IfThenElseZero(weighed.inlier, weighed.r2));
+      all.add(J, p.r, w);
     }
-    if (v % kRows == kRows - 1) sums.empty_into(d, k);
+    if (v % kRows == kRows - 1 || v == k.height - 1) {
+      all.empty_into(d, k.triangle, k.gradient);
+      k.square_sum += sums::sum(d, square);
+      square = hn::Zero(d);
+    }
   }
-  sums.empty_into(d, k);
   work = k;
 }
 

@@ -19,8 +19,7 @@ struct CameraKernel {
   float R[9], t[3];  // p_view = R p + t
   float gate2_m2;    // squared distance beyond which two surfaces are not the same
   float robust2;     // squared sigmas at which Tukey's biweight reaches zero
-  // Results: sums of w J J^T (upper triangle by rows) and w J r; of r^2 over the variance of the inliers, and
-  // of r^2 itself.
+  // Results: sums of w J J^T (upper triangle by rows), of w J r, and of the inliers' r^2.
   double triangle[21]{}, gradient[6]{}, square_sum = 0;
   int readings = 0, facing = 0, paired = 0, inliers = 0;
 };

@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include "algo/tracking/pairing-inl.hpp"
+#include "algo/tracking/point_plane-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace st {
@@ -34,10 +35,8 @@ void depth_sums(DepthKernel& work) {
       const Pair pair = pair_at(d, k, i);
       const Vec gap = gap_to_model(d, k, pair);
       const V distance2 = hn::MulAdd(gap.x, gap.x, hn::MulAdd(gap.y, gap.y, hn::Mul(gap.z, gap.z)));
-      const V sigma = hn::MulAdd(hn::Mul(pair.q.z, pair.q.z), hn::Set(d, kDepthSigmaPerSquare),
-                                 hn::Set(d, kLeastDepthSigma_m));
-      const V reach2 = hn::MulAdd(hn::Mul(sigma, sigma), hn::Set(d, 16.0f), hn::Set(d, work.gate2_m2));
-      const M on = hn::And(pair.on, hn::Le(distance2, reach2));
+      const V sigma = point_plane::axial_sigma(d, pair.q.z);
+      const M on = hn::And(pair.on, point_plane::in_reach(d, distance2, sigma, work.gate2_m2));
       if (hn::AllFalse(d, on)) continue;
       work.paired += static_cast<int>(hn::CountTrue(d, on));
 
@@ -45,20 +44,12 @@ void depth_sums(DepthKernel& work) {
       const Vec n{hn::Mul(low_half(d, xy), per_scale), hn::Mul(high_half(d, xy), per_scale),
                   hn::Mul(low_half(d, word<2>(k, pair.record)), per_scale)};
       const V r = hn::IfThenElseZero(on, hn::MulAdd(n.x, gap.x, hn::MulAdd(n.y, gap.y, hn::Mul(n.z, gap.z))));
-      // Axial noise seen along the normal, plus what a pixel's width leaves open sideways.
-      const V axial = hn::Mul(sigma, n.z), lateral = hn::Mul(half_pixel, pair.q.z);
-      const V variance = hn::MulAdd(axial, axial, hn::Mul(lateral, lateral));
-      const V r2 = hn::Mul(r, r);
-      const M inlier = hn::And(on, hn::Lt(r2, hn::Mul(hn::Set(d, 9.0f), variance)));
-      work.inliers += static_cast<int>(hn::CountTrue(d, inlier));
-      square = hn::Add(square, hn::IfThenElseZero(inlier, r2));
-      // Tukey's biweight over the variance.
-      const V per_variance = hn::Div(hn::Set(d, 1.0f), variance);
-      const V keep =
-          hn::NegMulAdd(hn::Mul(r2, per_variance), hn::Set(d, 1.0f / work.robust2), hn::Set(d, 1.0f));
-      const M used = hn::And(on, hn::Gt(keep, hn::Zero(d)));
-      const V w = hn::IfThenElseZero(
-          used, hn::Mul(hn::Mul(keep, keep), hn::Mul(per_variance, hn::Set(d, work.information))));
+      const auto weighed = point_plane::weigh(d, r, n.z, pair.q.z, sigma, half_pixel, work.robust2, on);
+      work.inliers += static_cast<int>(hn::CountTrue(d, weighed.inlier));
+      square = hn::Add(square, hn::IfThenElseZero(weighed.inlier, weighed.r2));
+      const V w =
+          hn::IfThenElseZero(on, hn::Mul(hn::Mul(weighed.keep, weighed.keep),
+                                         hn::Mul(weighed.per_variance, hn::Set(d, work.information))));
       V J[6];
       pose_jacobian(d, k, pair, n, J);  // the object moves, the point stands: J is minus this, as is r here
       sums.add(J, hn::Neg(r), w);

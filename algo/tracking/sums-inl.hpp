@@ -23,9 +23,11 @@ using M = hn::Mask<D>;
 
 constexpr int kBlock = 512;  // points between two emptyings of the float sums into double ones
 
-struct Vec {
-  V x, y, z;
+template <class W>
+struct VecOf {
+  W x, y, z;
 };
+using Vec = VecOf<V>;
 
 HWY_INLINE Vec turned(D d, const float* R, const Vec& p) {
   const auto row = [&](int r) {
@@ -50,20 +52,25 @@ HWY_INLINE Vec turned_back(D d, const float* R, const Vec& p) {
   return {column(0), column(1), column(2)};
 }
 
-HWY_INLINE Vec crossed(const Vec& a, const Vec& b) {
+template <class W>
+HWY_INLINE VecOf<W> crossed(const VecOf<W>& a, const VecOf<W>& b) {
   return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
           hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
 }
 
-HWY_INLINE double sum(D d, V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); }
+template <class E>
+HWY_INLINE double sum(E d, hn::Vec<E> v) {
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v)));
+}
 
-// Sums of w J J^T (upper triangle, row by row) and w J r.
-template <int N>
-struct Sums {
+// Sums of w J J^T (upper triangle, row by row) and w J r, for vectors of any width.
+template <class E, int N>
+struct SumsOf {
+  using V = hn::Vec<E>;
   static constexpr int kTriangle = N * (N + 1) / 2;
   V h[kTriangle], g[N];
 
-  HWY_INLINE void clear(D d) {
+  HWY_INLINE void clear(E d) {
     for (V& v : h) v = hn::Zero(d);
     for (V& v : g) v = hn::Zero(d);
   }
@@ -75,12 +82,14 @@ struct Sums {
       for (int j = i; j < N; ++j, ++k) h[k] = hn::MulAdd(wJ, J[j], h[k]);
     }
   }
-  HWY_INLINE void empty_into(D d, double* triangle, double* gradient) {
+  HWY_INLINE void empty_into(E d, double* triangle, double* gradient) {
     for (int i = 0; i < kTriangle; ++i) triangle[i] += sum(d, h[i]);
     for (int i = 0; i < N; ++i) gradient[i] += sum(d, g[i]);
     clear(d);
   }
 };
+template <int N>
+using Sums = SumsOf<D, N>;
 
 }  // namespace sums
 }  // namespace HWY_NAMESPACE
