@@ -144,18 +144,26 @@ CameraPrior ScanTracker::prior() const {
 void ScanTracker::align(const LadderStep& step) {
   constexpr double kSearchGate_m = 0.3, kSecondGate_m = 0.2;
   aligned_ = CameraAlignResult{};
+  verdict_ = CameraVerdict{};
   if (volume_.integrations == 0) return;
   CameraAlignInput in{depth_, view_, depth_.levels[finest(step)].camera, Pose{}, prior()};
   in.finest = finest(step);
   if (course_ == Course::kSearching) in.gate_m = kSearchGate_m;
-  aligned_ = align_camera(in);
-  if (course_ == Course::kSearching) return;
-  if (judge_camera(aligned_, habit_).state == TrackState::kGood) return;
+  try_from(in);
+  if (course_ == Course::kSearching || verdict_.state == TrackState::kGood) return;
   // A hand that stops or turns at once is nearer to where it was than to where it was going.
   in.start = T_world_view_.inverse() * motion_.last();
   in.gate_m = kSecondGate_m;
-  const CameraAlignResult second = align_camera(in);
-  if (second.inliers > aligned_.inliers) aligned_ = second;
+  try_from(in);
+}
+
+// Keeps what explains most pixels, and its verdict.
+void ScanTracker::try_from(const CameraAlignInput& in) {
+  const CameraAlignResult tried = align_camera(in);
+  count_.pixels_aligned += static_cast<double>(tried.pixels_visited);
+  if (aligned_.solved && tried.inliers <= aligned_.inliers) return;
+  aligned_ = tried;
+  verdict_ = judge_camera(tried, habit_);
 }
 
 void ScanTracker::judge() {
@@ -165,7 +173,6 @@ void ScanTracker::judge() {
     camera_now_.state = TrackState::kGood;
     return;
   }
-  verdict_ = judge_camera(aligned_, habit_);
   camera_now_ = {verdict_.state, T_world_view_ * aligned_.T_view_camera, verdict_.explained,
                  static_cast<float>(aligned_.rms_m)};
   if (course_ == Course::kSearching && !found()) {
@@ -212,7 +219,9 @@ void ScanTracker::integrate(const LadderStep& step) {
 // False when this frame has no colour.
 bool ScanTracker::take_color() {
   if (!calibration_.has_color || input_->color.empty()) return false;
-  const Pose T_then_now = motion_.moved_within(input_->color_device_t_s - input_->device_t_s).inverse();
+  CameraMotion motion = motion_;
+  motion.take(input_->device_t_s, camera_now_.T_world_camera);  // its way to here, not to where it was
+  const Pose T_then_now = motion.moved_within(input_->color_device_t_s - input_->device_t_s).inverse();
   return frame_colors(calibration_, {input_->color}, to_float(T_then_now), depth_.levels[0].z, camera_,
                       color_);
 }
@@ -236,7 +245,6 @@ void ScanTracker::decide() {
       prove();
       break;
   }
-  count_.pixels_aligned += static_cast<double>(aligned_.pixels_visited);
   const bool good = camera_now_.state == TrackState::kGood;
   ++(good ? count_.tracked : count_.lost);
   count_.good_at_end = good;

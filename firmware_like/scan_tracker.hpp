@@ -58,6 +58,7 @@ class ScanTracker {
   void place_volume();
   Pose place_to_try() const;
   CameraPrior prior() const;
+  void try_from(const CameraAlignInput& in);
   bool take_color();
   bool found() const;
   void follow_lead();

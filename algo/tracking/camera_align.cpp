@@ -117,7 +117,6 @@ CameraAlignResult align_camera(const CameraAlignInput& in) {
       const Step step = solve(eq);
       result.solved = step.solved;
       if (!step.solved) return result;
-      ++result.iterations;
       result.pixels_visited += static_cast<long>(k.width) * k.height;
       T = moved_about(T, step.twist, Vec3{});
       if (step.move_m < level.settled_m && step.turn_rad < level.settled_rad) break;

@@ -29,13 +29,12 @@ struct CameraAlignInput {
 struct CameraAlignResult {
   Pose T_view_camera;
   bool solved = false;
-  int pixels = 0;    // of the finest level that was used
-  int readings = 0;  // with depth
-  int facing = 0;    // with a surface of the view before or behind them
-  int paired = 0;    // with one in reach
-  int inliers = 0;   // within three sigma
-  double rms_m = 0;  // of the inliers
-  int iterations = 0;
+  int pixels = 0;                 // of the finest level that was used
+  int readings = 0;               // with depth
+  int facing = 0;                 // with a surface of the view before or behind them
+  int paired = 0;                 // with one in reach
+  int inliers = 0;                // within three sigma
+  double rms_m = 0;               // of the inliers
   long pixels_visited = 0;        // over all iterations
   double data_information[36]{};  // of the pose by depth alone; view's camera axes, rotation about its centre
 };

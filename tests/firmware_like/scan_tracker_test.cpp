@@ -56,9 +56,8 @@ struct Hand {
     FrameInput input;
     input.t_s = input.device_t_s = static_cast<double>(frames++) / 30;
     input.depth = {stored.data(), z.width, z.height};
-    const std::vector<std::uint8_t> grey(3 * stored.size() + 16, 90);
-    input.color = {grey.data(), 3 * z.width, z.height};
-    input.color_device_t_s = input.device_t_s;
+    input.color = {rgb.data(), 3 * z.width, z.height};
+    input.color_device_t_s = input.device_t_s - color_lag_s;
     FrameReport report;
     tracker.preprocess(input, report);
     tracker.predict();
@@ -81,6 +80,8 @@ struct Hand {
   MemoryPlan plan;
   std::vector<std::uint8_t> memory;
   int frames = 0;
+  std::vector<std::uint8_t> rgb = std::vector<std::uint8_t>(3 * kRoomCamera.width * kRoomCamera.height, 90);
+  double color_lag_s = 0;
 };
 
 }  // namespace
@@ -129,6 +130,32 @@ TEST(ScanTracker, ALateFrameLeavesOutColourThenPixelsThenTheFusion) {
   UNSIGNED_LONGS_EQUAL(fused, hand.tracker.scene().integrations);
   CHECK(report.camera.state == TrackState::kGood);
   DOUBLES_EQUAL(0, norm(report.camera.T_world_camera.t - way(21).t), 0.005);
+}
+
+// The colour image is from the frame before, when the camera still stood: left half dark, right half bright.
+TEST(ScanTracker, AnOlderColourImageIsLaidWhereTheCameraWasThen) {
+  hand.color_lag_s = 1.0 / 30;
+  for (std::size_t i = 0; i < hand.rgb.size(); ++i)
+    hand.rgb[i] = static_cast<int>(i / 3) % kRoomCamera.width < kRoomCamera.width / 2 ? 20 : 220;
+  for (int i = 0; i < 4; ++i) hand.see(kCorner, way(0), 1);
+  CHECK(hand.see(kCorner, {Mat3{}, {0.04, 0, 0}}, 0).camera.state == TrackState::kGood);
+
+  const Volume& v = hand.tracker.scene();
+  int left = 0, right = 0, wrong = 0;
+  for (int z = 0; z < v.side; ++z)
+    for (int y = 0; y < v.side; ++y)
+      for (int x = 0; x < v.side; ++x) {
+        const std::uint32_t c = v.color[v.index(x, y, z)];
+        const Vec3f p =
+            v.origin + Vec3f{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)} * v.voxel_m;
+        const float off_px = kRoomCamera.fx * p.x / p.z - 0.5f;
+        if (c == 0 || std::fabs(off_px) < 2.5f || std::fabs(off_px) > 8) continue;
+        const bool bright = red_of(c) > 120;
+        ++(bright ? right : left);
+        wrong += bright != (off_px > 0) ? 1 : 0;
+      }
+  CHECK(left > 50 && right > 50);
+  CHECK(wrong < (left + right) / 20);
 }
 
 // Far from where it was lost, at a place that it knows.
