@@ -58,7 +58,8 @@ struct RaycastOptions {
   bool smooth_young = false;
   // Depth where each pixel's surface is guessed to be, whole image; may be empty. Rays then look only within
   // kGuessReach truncations of it, and pixels without a guess stay empty: enough to align the frame that the
-  // guesses are from, at a fraction of the march.
+  // guesses are from, at a fraction of the march. Read eight at a time: the last row must be followed by 8
+  // readable elements.
   ImageView<const float> guess = {};
 };
 
