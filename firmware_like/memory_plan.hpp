@@ -10,6 +10,14 @@
 
 namespace st {
 
+// A row whose memory a member function of its owner takes.
+template <typename Owner>
+struct MemberPart {
+  Owner* owner;
+  void (Owner::*take)(Bump&);
+  void bind(Bump& memory) { (owner->*take)(memory); }
+};
+
 class MemoryPlan {
  public:
   static constexpr std::size_t kMaxEntries = 48;

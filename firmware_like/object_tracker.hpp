@@ -81,12 +81,6 @@ class ObjectTracker {
   bool floor_found() const { return support_.found; }
 
  private:
-  // One row of the memory plan: which member function takes that memory.
-  struct Part {
-    ObjectTracker* tracker;
-    void (ObjectTracker::*take)(Bump&);
-    void bind(Bump& memory) { (tracker->*take)(memory); }
-  };
   void bind_images(Bump& memory);
   void bind_segmenter(Bump& memory);
   void bind_volumes(Bump& memory);
@@ -166,7 +160,7 @@ class ObjectTracker {
   ObjectCount* count_of(int id);  // null: more objects than the list holds
   void freeze_background();
 
-  Part parts_[8];
+  MemberPart<ObjectTracker> parts_[8];
   Calibration calibration_;
   LoopConfig config_;
   Frame frame_;

@@ -44,12 +44,6 @@ class ScanTracker {
   const CameraEnd& count() const { return count_; }
 
  private:
-  // One row of the memory plan: which member function takes that memory.
-  struct Part {
-    ScanTracker* tracker;
-    void (ScanTracker::*take)(Bump&);
-    void bind(Bump& memory) { (tracker->*take)(memory); }
-  };
   void bind_images(Bump& memory);
   void bind_volume(Bump& memory);
   void bind_view(Bump& memory);
@@ -71,7 +65,7 @@ class ScanTracker {
   void watch_border();
   void log(EventKind kind, double a = 0, double b = 0);
 
-  Part parts_[4];
+  MemberPart<ScanTracker> parts_[4];
   Calibration calibration_;
   LoopConfig config_;
   Pinhole camera_;

@@ -1,31 +1,25 @@
-// Memory for one bind(): measured first, then taken, as the memory plan does it.
+// Memory for one bind(), which tells whether both of its runs took the same.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
-#include "algo/core/bump.hpp"
+#include "firmware_like/heap_memory.hpp"
 
 namespace st::test {
 
 class BoundMemory {
  public:
   template <typename Bind>
-  explicit BoundMemory(Bind bind) {
-    Bump measure;
-    bind(measure);
-    bytes_.resize(measure.used() + Bump::kAlign);
-    const auto at = reinterpret_cast<std::uintptr_t>(bytes_.data());
-    Bump take(bytes_.data() + (Bump::kAlign - at % Bump::kAlign) % Bump::kAlign, measure.used());
-    bind(take);
-    overflowed_ = take.overflowed() || take.used() != measure.used();
-  }
+  explicit BoundMemory(Bind bind)
+      : memory_([&](Bump& bump) {
+          bind(bump);
+          overflowed_ = bump.overflowed() || (!bump.measuring() && bump.used() != measured_);
+          measured_ = bump.used();
+        }) {}
   bool overflowed() const { return overflowed_; }
-  std::size_t bytes() const { return bytes_.size(); }
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  std::size_t measured_ = 0;
   bool overflowed_ = false;
+  HeapMemory memory_;
 };
 
 }  // namespace st::test
