@@ -177,7 +177,8 @@ TEST(Raycast, OnlyWhatIsNearItsGuessIsLookedFor) {
   for (int v = roi.v0; v < roi.v1; ++v)
     for (int u = roi.u0; u < roi.u1; ++u) {
       const float z = marched[bench.maps.at(u, v)];
-      if (z > 0 && stripe(u) != 1) guess[static_cast<std::size_t>(v * view.camera.width + u)] = z + off[stripe(u)];
+      if (z > 0 && stripe(u) != 1)
+        guess[static_cast<std::size_t>(v * view.camera.width + u)] = z + off[stripe(u)];
     }
   RaycastOptions options;
   options.guess = {guess.data(), view.camera.width, view.camera.height};
