@@ -17,7 +17,7 @@ constexpr double kGateSigmas = 4;
 constexpr double kWaySlip = 0.03, kTurnSlip = 0.04, kTurnPerWay_rpm = 0.05;
 constexpr double kRest_m = 0.0004, kRest_rad = 0.0006;
 constexpr double kExtraTurn_rpm = 0.15, kExtraTurnDrift_rpm = 0.002;  // at the start; of a frame
-constexpr int kMostRefused = 15;  // half a second of places that agree among themselves: they are right
+constexpr int kMostRefused = 15;  // half a second of places that agree with each other and with the wheels
 
 double squared(double v) { return v * v; }
 
@@ -54,6 +54,7 @@ void BaseTracker::predict(double forward_m, double turn_rad) {
   const double turn = turn_rad + extra_turn_rpm_ * forward_m;
   const SinCos h = sin_cos(base_.yaw + 0.5 * turn);
   base_ = advanced(base_, forward_m, turn);
+  refused_base_ = advanced(refused_base_, forward_m, turn);
   const double f = forward_m;
   // P = F P F', where F is the identity and these.
   const double by_yaw[2] = {-f * h.sin, f * h.cos};
@@ -77,35 +78,63 @@ void BaseTracker::predict(double forward_m, double turn_rad) {
   P_[3][3] += f != 0 ? squared(kExtraTurnDrift_rpm) : 0;
 }
 
-// One measured number. False: it cannot be true.
-bool BaseTracker::correct(double error, const double (&H)[kStates], double sigma, double gate) {
-  double PH[kStates]{}, S = sigma * sigma;
+BaseTracker::Innovation BaseTracker::innovation(double error, const double (&H)[kStates],
+                                                double sigma) const {
+  Innovation e;
+  e.error = error;
+  e.S = sigma * sigma;
+  for (int r = 0; r < kStates; ++r) {
+    e.H[r] = H[r];
+    for (int c = 0; c < kStates; ++c) e.PH[r] += P_[r][c] * H[c];
+    e.S += H[r] * e.PH[r];
+  }
+  return e;
+}
+
+void BaseTracker::correct(const Innovation& e) {
+  const double step = e.error / e.S;
+  base_ = {base_.x + e.PH[0] * step, base_.y + e.PH[1] * step, wrap_angle(base_.yaw + e.PH[2] * step)};
+  extra_turn_rpm_ += e.PH[3] * step;
   for (int r = 0; r < kStates; ++r)
-    for (int c = 0; c < kStates; ++c) PH[r] += P_[r][c] * H[c];
-  for (int r = 0; r < kStates; ++r) S += H[r] * PH[r];
-  if (std::fabs(error) > gate && error * error > kGateSigmas * kGateSigmas * S) return false;
-  const double step = error / S;
-  base_ = {base_.x + PH[0] * step, base_.y + PH[1] * step, wrap_angle(base_.yaw + PH[2] * step)};
-  extra_turn_rpm_ += PH[3] * step;
-  for (int r = 0; r < kStates; ++r)
-    for (int c = 0; c < kStates; ++c) P_[r][c] -= PH[r] * PH[c] / S;
-  return true;
+    for (int c = 0; c < kStates; ++c) P_[r][c] -= e.PH[r] * e.PH[c] / e.S;
 }
 
 // The object's origin is at base - R b, with R the object's heading as the base's own has it.
-void BaseTracker::correct_place(const Pose2& object) {
+BaseTracker::Innovation BaseTracker::place_innovation(const Pose2& object, int axis) const {
   const Pose2& b = fit_.T_object_base;
-  bool fits = true;
-  for (int axis = 0; axis < 2 && fits; ++axis) {
-    const SinCos h = sin_cos(base_.yaw - b.yaw);
-    const double rx = h.cos * b.x - h.sin * b.y, ry = h.sin * b.x + h.cos * b.y;
-    const double error = axis == 0 ? object.x - (base_.x - rx) : object.y - (base_.y - ry);
-    const double H[kStates] = {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 0 ? ry : -rx, 0};
-    fits = correct(error, H, kPlaceSigma_m, kPlaceGate_m);
-  }
-  refused_ = fits ? 0 : refused_ + 1;
-  if (refused_ > kMostRefused) begin_at(compose(object, b));
-  seen_ = refused_ == 0;
+  const SinCos h = sin_cos(base_.yaw - b.yaw);
+  const double rx = h.cos * b.x - h.sin * b.y, ry = h.sin * b.x + h.cos * b.y;
+  const double error = axis == 0 ? object.x - (base_.x - rx) : object.y - (base_.y - ry);
+  const double H[kStates] = {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 0 ? ry : -rx, 0};
+  return innovation(error, H, kPlaceSigma_m);
+}
+
+// Both coordinates correct, or neither does: one that fits by chance says nothing about a place that does
+// not.
+void BaseTracker::correct_place(const Pose2& object) {
+  const Innovation x = place_innovation(object, 0), y = place_innovation(object, 1);
+  double S_xy = 0;
+  for (int r = 0; r < kStates; ++r) S_xy += x.H[r] * y.PH[r];
+  // e' S^-1 e
+  const double sigmas2 = (y.S * squared(x.error) - 2 * S_xy * x.error * y.error + x.S * squared(y.error)) /
+                         (x.S * y.S - squared(S_xy));
+  seen_ = squared(x.error) + squared(y.error) <= squared(kPlaceGate_m) || sigmas2 <= squared(kGateSigmas);
+  if (!seen_) return refuse(compose(object, fit_.T_object_base));
+  refused_ = 0;
+  correct(x);
+  correct(place_innovation(object, 1));
+}
+
+// Somebody may have carried the robot: a base that goes on from where it was seen last is believed in the
+// end.
+void BaseTracker::refuse(const Pose2& base) {
+  const bool agrees =
+      squared(base.x - refused_base_.x) + squared(base.y - refused_base_.y) <= squared(kPlaceGate_m);
+  refused_ = refused_ > 0 && agrees ? refused_ + 1 : 1;
+  refused_base_ = base;
+  if (refused_ <= kMostRefused) return;
+  begin_at(base);
+  seen_ = true;
 }
 
 // The travel by the wheels, the turn by the camera: a wheel that is too large turns the robot, but hardly
@@ -137,8 +166,10 @@ void BaseTracker::update(const WheelOdometry& wheels, double told_v_mps, double 
   if (object != nullptr && object->good) {
     correct_place(object->pose);
     const double turn = wrap_angle(object->pose.yaw + fit_.T_object_base.yaw - base_.yaw);
-    const double H[kStates] = {0, 0, 1, 0};
-    true_heading = seen_ && object->has_heading && correct(turn, H, kHeadingSigma_rad, kHeadingGate_rad);
+    const Innovation heading = innovation(turn, {0, 0, 1, 0}, kHeadingSigma_rad);
+    true_heading = seen_ && object->has_heading &&
+                   (std::fabs(turn) <= kHeadingGate_rad || turn * turn <= squared(kGateSigmas) * heading.S);
+    if (true_heading) correct(heading);
     learn(wheels, object->pose, true_heading);
     object_ = object->pose;
   }

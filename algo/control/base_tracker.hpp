@@ -30,8 +30,15 @@ class BaseTracker {
 
   void begin_at(const Pose2& base);
   void predict(double forward_m, double turn_rad);
-  bool correct(double error, const double (&H)[kStates], double sigma, double gate);
+  struct Innovation {  // of one measured number
+    double error = 0, S = 0;
+    double H[kStates]{}, PH[kStates]{};
+  };
+  Innovation innovation(double error, const double (&H)[kStates], double sigma) const;
+  Innovation place_innovation(const Pose2& object, int axis) const;
+  void correct(const Innovation& e);
   void correct_place(const Pose2& object);
+  void refuse(const Pose2& base);
   void learn(const WheelOdometry& wheels, const Pose2& object, bool true_heading);
 
   BaseGuess guess_;
@@ -42,7 +49,8 @@ class BaseTracker {
   double P_[kStates][kStates]{};
   bool seen_ = false;
   bool had_heading_ = false;  // a true one, in the frame before
-  int refused_ = 0;
+  int refused_ = 0;           // places, one after the other, that agree
+  Pose2 refused_base_;        // by the last of them, carried on by the wheels
   BodyMotion window_;
   double window_forward_m_ = 0;
 };

@@ -188,6 +188,60 @@ TEST(ClosedLoop, AJumpOfThePoseIsNotFollowedAtOnce) {
   DOUBLES_EQUAL(before.x + 0.5, tracker.base().x, 0.01);
 }
 
+// A tracker that has lost the robot and finds it somewhere else in every frame: none of that is it.
+TEST(ClosedLoop, PlacesThatDoNotAgreeAreNeverBelieved) {
+  const Obedience o = start(robot, random, 0, kNobodyElse);
+  for (const bool two_places : {false, true}) {
+    BaseTracker tracker;
+    tracker.start(o, seen(1, robot.pose, random).pose);
+    const Pose2 before = tracker.base();
+    for (int i = 0; i < 300; ++i) {
+      SeenObject wrong = seen(1, robot.pose, random);
+      const double angle = two_places ? i % 2 * kPi : 2 * kPi * random.uniform();
+      const double away_m = two_places ? 0.3 : 0.2 + random.uniform();
+      wrong.pose.x += away_m * std::cos(angle);
+      wrong.pose.y += away_m * std::sin(angle);
+      tracker.update(odometry({}, kFrame_s), 0, 0, &wrong);
+      CHECK_FALSE(tracker.seen());
+    }
+    DOUBLES_EQUAL(before.x, tracker.base().x, 1e-9);
+    DOUBLES_EQUAL(before.y, tracker.base().y, 1e-9);
+  }
+}
+
+// Carried away while it drives on: the places agree once the wheels' way is taken off.
+TEST(ClosedLoop, ARobotThatWasCarriedIsFoundWhileItDrives) {
+  const Obedience o = start(robot, random, 0, kNobodyElse);
+  BaseTracker tracker;
+  tracker.start(o, seen(1, robot.pose, random).pose);
+  robot.pose.y += 0.4;
+  const WheelSpeeds told = wheel_speeds(0.4, 0, kBase_m);
+  for (int i = 0; i < 20; ++i) {
+    robot.roll(told, kFrame_s);
+    const SeenObject object = seen(1, robot.pose, random);
+    tracker.update(odometry(told, kFrame_s), 0, 0, &object);
+    CHECK_EQUAL(i >= 15, tracker.seen());
+  }
+  DOUBLES_EQUAL(robot.pose.x, tracker.base().x, 0.01);
+  DOUBLES_EQUAL(robot.pose.y, tracker.base().y, 0.01);
+}
+
+TEST(ClosedLoop, APlaceThatIsWrongInOneCoordinateCorrectsNeither) {
+  const Obedience o = start(robot, random, 0, kNobodyElse);
+  BaseTracker tracker;
+  tracker.start(o, seen(1, robot.pose, random).pose);
+  const Pose2 before = tracker.base();
+  for (const bool in_y : {false, true}) {
+    SeenObject wrong = seen(1, robot.pose, random);
+    wrong.pose.x += in_y ? 0.02 : 0.5;
+    wrong.pose.y += in_y ? 0.5 : 0.02;
+    tracker.update(odometry({}, kFrame_s), 0, 0, &wrong);
+    CHECK_FALSE(tracker.seen());
+    DOUBLES_EQUAL(before.x, tracker.base().x, 1e-9);
+    DOUBLES_EQUAL(before.y, tracker.base().y, 1e-9);
+  }
+}
+
 // What a tracker does on a round robot without a print: places are right, headings slide away.
 TEST(ClosedLoop, AHeadingThatSlidesIsLeftOut) {
   const Obedience o = start(robot, random, 0, kNobodyElse);
