@@ -125,13 +125,16 @@ void BaseTracker::correct_place(const Pose2& object) {
   correct(place_innovation(object, 1));
 }
 
-// Somebody may have carried the robot: a base that goes on from where it was seen last is believed in the
-// end.
+// Somebody may have carried the robot: a base that goes on by the wheels from where it was refused first is
+// believed in the end. A thing that stands where the robot should drive is not it, however well it stands.
 void BaseTracker::refuse(const Pose2& base) {
-  const bool agrees =
-      squared(base.x - refused_base_.x) + squared(base.y - refused_base_.y) <= squared(kPlaceGate_m);
-  refused_ = refused_ > 0 && agrees ? refused_ + 1 : 1;
-  refused_base_ = base;
+  const double apart2_m2 = squared(base.x - refused_base_.x) + squared(base.y - refused_base_.y);
+  if (refused_ > 0 && apart2_m2 <= squared(kPlaceGate_m)) {
+    ++refused_;
+  } else {
+    refused_ = 1;
+    refused_base_ = base;
+  }
   if (refused_ <= kMostRefused) return;
   begin_at(base);
   seen_ = true;

@@ -50,7 +50,7 @@ class BaseTracker {
   bool seen_ = false;
   bool had_heading_ = false;  // a true one, in the frame before
   int refused_ = 0;           // places, one after the other, that agree
-  Pose2 refused_base_;        // by the last of them, carried on by the wheels
+  Pose2 refused_base_;        // by the first of them, carried on by the wheels
   BodyMotion window_;
   double window_forward_m_ = 0;
 };

@@ -226,6 +226,21 @@ TEST(ClosedLoop, ARobotThatWasCarriedIsFoundWhileItDrives) {
   DOUBLES_EQUAL(robot.pose.y, tracker.base().y, 0.01);
 }
 
+// The tracker holds on to something that stands: it is where it was, but not where the robot drives.
+TEST(ClosedLoop, AThingThatStandsIsNotTheRobotThatDrives) {
+  const Obedience o = start(robot, random, 0, kNobodyElse);
+  BaseTracker tracker;
+  tracker.start(o, seen(1, robot.pose, random).pose);
+  Pose2 chair = robot.pose;
+  chair.y += 0.4;
+  const WheelSpeeds told = wheel_speeds(0.2, 0, kBase_m);
+  for (int i = 0; i < 60; ++i) {
+    const SeenObject wrong = seen(1, chair, random);
+    tracker.update(odometry(told, kFrame_s), 0, 0, &wrong);
+    CHECK_FALSE(tracker.seen());
+  }
+}
+
 TEST(ClosedLoop, APlaceThatIsWrongInOneCoordinateCorrectsNeither) {
   const Obedience o = start(robot, random, 0, kNobodyElse);
   BaseTracker tracker;
