@@ -37,9 +37,20 @@ void RobotDriver::watch(const DriverView& view, double passed_s) {
   base_now_ = since.valid ? advanced(base_.base(), since.forward_m, since.turn_rad) : base_.base();
 }
 
+void RobotDriver::listen(FixedVector<OdometrySample, 64>& odometry) {
+  const std::size_t known = odometry.size();
+  robot_.poll(odometry, status_);
+  if (phase_ != Phase::kStartMotion) return;
+  for (std::size_t i = known; i < odometry.size(); ++i) {
+    start_forward_m_ += 0.5 * (odometry[i].left_m + odometry[i].right_m);
+    start_turn_rad_ += (odometry[i].right_m - odometry[i].left_m) / wheel_base_m();
+  }
+}
+
 void RobotDriver::decide(double now_s, const DriverView& view) {
   if (phase_since_s_ < 0) phase_since_s_ = last_s_ = now_s;
-  const double passed_s = now_s - last_s_ < kLongestStep_s ? now_s - last_s_ : kLongestStep_s;
+  const double passed_s = stood_ ? 0 : now_s - last_s_ < kLongestStep_s ? now_s - last_s_ : kLongestStep_s;
+  stood_ = false;
   last_s_ = now_s;
   watch(view, passed_s);
   Sight sight = view.sight;
@@ -100,7 +111,12 @@ WheelSpeeds RobotDriver::dead_reckoned(double passed_s) {
 }
 
 WheelSpeeds RobotDriver::start_motion_speeds(double now_s, const DriverView& view, double passed_s) {
-  if (!open_->done()) return dead_reckoned(passed_s);
+  if (!open_->done()) {
+    const WheelSpeeds speeds =
+        within_start_allowance(dead_reckoned(passed_s), start_forward_m_, start_turn_rad_, wheel_base_m());
+    open_->told(speeds);
+    return speeds;
+  }
   picked_ = witness_.judge();
   if (const SeenObject* robot = robot_in(view.objects); robot != nullptr && robot->good) {
     base_.start(picked_, robot->pose);
@@ -130,9 +146,12 @@ WheelSpeeds RobotDriver::client_speeds(double now_s) {
   return wheel_speeds(command_.v_mps, command_.w_rps, wheel_base_m());
 }
 
+// A start motion is short enough for a frame that is a little late to lead beyond it.
 void RobotDriver::wait_without_frame(double now_s) {
-  if (phase_since_s_ < 0 || (now_s - last_s_) * 1000 < kStaleFrame_ms) return;
-  speeds_ = {};
+  const bool late = phase_ == Phase::kStartMotion || (now_s - last_s_) * 1000 >= kStaleFrame_ms;
+  if (phase_since_s_ < 0 || !late) return;
+  if (!stood_) hold(now_s - last_s_);
+  stood_ = true;
   robot_.stop();
 }
 

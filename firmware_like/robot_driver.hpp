@@ -37,7 +37,7 @@ class RobotDriver {
               Reaction on_bump);
 
   // What the robot has told since the last call; once a frame, before decide().
-  void listen(FixedVector<OdometrySample, 64>& odometry) { robot_.poll(odometry, status_); }
+  void listen(FixedVector<OdometrySample, 64>& odometry);
   // What the wheels are to do until the next frame. `now_s`: any steady clock.
   void decide(double now_s, const DriverView& view);
   void send() { robot_.drive(speeds_.left_mps, speeds_.right_mps); }
@@ -93,12 +93,14 @@ class RobotDriver {
 
   Phase phase_ = Phase::kLearning;
   double phase_since_s_ = -1, last_s_ = 0;
+  bool stood_ = false;  // it was stopped since the last frame, and the path's time with it
   Path start_path_ = start_motion();
   std::optional<OpenLoopFollower> open_;  // of the start motion, or of the path in an open loop
   std::optional<PoseFollower> closed_;
   Pose2 T_floor_path_;
   StartWitness witness_;
   int start_motions_ = 0;
+  double start_forward_m_ = 0, start_turn_rad_ = 0;  // by the wheels, since the first start motion began
   bool never_obeyed_ = false;
   Obedience picked_;
   double path_begins_t_s_ = -1;

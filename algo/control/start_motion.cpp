@@ -8,6 +8,7 @@ namespace st {
 namespace {
 
 constexpr double kPause_s = 0.3;
+constexpr double kLongestCommand_s = 0.25;  // then the guard stops the robot
 constexpr double kLeastLag_s = -0.06, kMostLag_s = 0.20, kCoarse_s = 0.02, kFine_s = 0.0025;
 constexpr double kSigma_m = 0.002, kSigma_rad = 0.012;  // of a tracked pose, for weighing the two
 // What obeying means. The wheels are as large as believed to within a quarter.
@@ -15,6 +16,12 @@ constexpr std::size_t kLeastFrames = 30;
 constexpr double kLeastWay_m = 0.03, kLeastTurn_rad = 0.1;  // of the wheels, while it was seen
 constexpr double kGain = 0.25, kMostMisfit_m = 0.006, kMostMisfit_rad = 0.06, kLeastExplained = 0.9;
 constexpr double kFarthestBase_m = 0.3;
+
+// Speed along one direction of which so much is used up.
+double slowed(double speed, double used, double allowance) {
+  const double most = (allowance - used) / kLongestCommand_s, least = (-allowance - used) / kLongestCommand_s;
+  return speed > most ? most : speed < least ? least : speed;
+}
 
 struct Spread {
   double low = 1e9, high = -1e9;
@@ -37,6 +44,14 @@ Path start_motion() {
   }
   path.plan();
   return path;
+}
+
+WheelSpeeds within_start_allowance(const WheelSpeeds& speeds, double forward_m, double turn_rad,
+                                   double wheel_base_m) {
+  const double v = 0.5 * (speeds.left_mps + speeds.right_mps),
+               w = (speeds.right_mps - speeds.left_mps) / wheel_base_m;
+  return wheel_speeds(slowed(v, forward_m, kStartAllowance_m), slowed(w, turn_rad, kStartAllowance_rad),
+                      wheel_base_m);
 }
 
 // What cannot be placed in time says nothing: it begins anew.

@@ -9,13 +9,21 @@
 #include "algo/control/path.hpp"
 #include "algo/control/wheel_motion.hpp"
 #include "algo/core/records.hpp"
+#include "algo/core/scalar_math.hpp"
 
 namespace st {
 
-inline constexpr double kStartWay_m = 0.045, kStartTurn_rad = 0.16;  // never further than that from its start
+inline constexpr double kStartWay_m = 0.045, kStartTurn_rad = 0.16;
+// Never further than that from its start, whatever the frames and the wheels do.
+inline constexpr double kStartAllowance_m = 0.05, kStartAllowance_rad = 10 * kPi / 180;
 
 // Forward and back, left and back: it ends where it began. Planned.
 Path start_motion();
+
+// The speeds, slowed down so that the robot, which by its wheels has gone so far from where the start motion
+// began, stays within the allowance for as long as a command may act.
+WheelSpeeds within_start_allowance(const WheelSpeeds& speeds, double forward_m, double turn_rad,
+                                   double wheel_base_m);
 
 // What the tracker makes of one object in one frame.
 struct SeenObject {

@@ -2,8 +2,6 @@
 
 #include <CppUTest/TestHarness.h>
 
-#include "firmware_like/robot_driver.hpp"
-
 using namespace st;
 
 namespace {
@@ -23,30 +21,6 @@ double drives_for_s(SafetySupervisor& supervisor, const Sight& sight, const Whee
   for (int i = 0; i < 1000; ++i)
     if (supervisor.judge(from_s + i * kTick_s, {}, sight, told) != Reaction::kNone) return i * kTick_s;
   return -1;
-}
-
-// A robot of which a test says how it is, and which remembers what it was told.
-class FakeBase final : public DriveBase {
- public:
-  bool drive(double left_mps, double right_mps) override {
-    left = left_mps, right = right_mps;
-    return true;
-  }
-  bool stop() override { return drive(0, 0); }
-  void poll(FixedVector<OdometrySample, 64>&, RobotStatus& status) override { status = with(fault); }
-  RobotGeometry geometry() const override { return {}; }
-  RobotModel model() const override { return RobotModel::kCreate2; }
-  void close() override {}
-
-  RobotFault fault = RobotFault::kNone;
-  double left = 0, right = 0;
-};
-
-Path long_line() {
-  Path path;
-  path.add_line(10);
-  path.plan();
-  return path;
 }
 
 }  // namespace
@@ -108,57 +82,6 @@ TEST(SafetySupervisor, HoldsWhileFramesAreLate) {
   CHECK(supervisor.fault() == RobotFault::kStale);
   CHECK(supervisor.judge(0.06, {}, {true, true, 0.02}, WheelSpeeds{}) == Reaction::kNone);
   CHECK(supervisor.fault() == RobotFault::kNone);
-}
-
-TEST(SafetySupervisor, TheDriverStandsForAsLongAsItIsHeldAndGoesOnWithItsPath) {
-  FakeBase base;
-  const Path path = long_line();
-  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kHold);
-  FixedVector<OdometrySample, 64> odometry;
-  DriverView view;
-  const auto drive = [&](double from_s, double to_s, const Sight& sight) {
-    for (double t = from_s; t < to_s; t += 1 / 30.0) {
-      driver.listen(odometry);
-      view.sight = sight;
-      driver.decide(t, view);
-      driver.send();
-    }
-  };
-  drive(0, 4, {true, true, 0.02});
-  DOUBLES_EQUAL(0.2, base.left, 0.01);
-  drive(4, 8, {true, true, 0.5});  // frames come half a second late
-  DOUBLES_EQUAL(0.0, base.left, 0);
-  CHECK(driver.held_by() == RobotFault::kStale && driver.fault() == RobotFault::kNone);
-  drive(8, 9, {true, true, 0.02});
-  DOUBLES_EQUAL(0.2, base.left, 0.01);
-  driver.wait_without_frame(9.1);
-  CHECK(base.left > 0);
-  driver.wait_without_frame(9.3);
-  DOUBLES_EQUAL(0.0, base.left, 0);
-  drive(9.4, 10, {true, true, 0.02});
-  base.fault = RobotFault::kCliff;
-  drive(10, 10.1, {true, true, 0.02});
-  DOUBLES_EQUAL(0.0, base.left, 0);
-  CHECK(driver.fault() == RobotFault::kCliff);
-}
-
-// A loop that is starved has frames a fifth of a second apart: the wheels must not be thrown to and fro.
-TEST(SafetySupervisor, LateFramesDoNotMakeTheDriverOvershoot) {
-  FakeBase base;
-  Path path;
-  path.add_line(0.5);
-  path.plan();
-  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kEnd);
-  DriverView view;
-  view.sight = {true, true, 0.1};
-  double way_m = 0;
-  for (double t = 0; t < 12; t += 0.19) {
-    driver.decide(t, view);
-    driver.send();
-    CHECK(base.left > -0.03 && base.left < 0.26);
-    way_m += 0.19 * base.left;
-  }
-  DOUBLES_EQUAL(0.5, way_m, 0.01);
 }
 
 TEST(SafetySupervisor, TheTableCanBeRead) {

@@ -69,6 +69,30 @@ TEST(Follower, SpeedsAreWholeMillimetresPerSecond) {
   }
 }
 
+// A tick that lasts a quarter of a second instead of a thirtieth: what it overshot is not made up at once.
+TEST(Follower, IrregularTicksNeitherHurryTheWheelsNorThrowThem) {
+  Path there_and_back;
+  there_and_back.limits = {0.1, 0.3, 0.5, 1.0};
+  for (const double way_m : {0.2, -0.2}) {
+    there_and_back.add_line(way_m);
+    there_and_back.add_wait(0.5);
+  }
+  there_and_back.plan();
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    sim::Random random(seed);
+    OpenLoopFollower follower(there_and_back, 0.235);
+    double at_m = 0, passed_s = 0;
+    while (!follower.done()) {
+      const WheelSpeeds speeds = follower.step(passed_s, 1 / 30.0);
+      CHECK(std::fabs(speeds.left_mps) <= 0.1 && std::fabs(speeds.right_mps) <= 0.1);
+      passed_s = random.uniform() < 0.3 ? 0.25 : 0.01 + 0.03 * random.uniform();
+      at_m += passed_s * speeds.left_mps;
+      CHECK(at_m > -0.012 && at_m < 0.212);  // braking 0.3 m/s^2 too late by a quarter of a second
+    }
+    DOUBLES_EQUAL(0, at_m, 0.002);
+  }
+}
+
 TEST(Follower, DeadReckoningClosesACircle) {
   DeadReckoning robot(0.25);
   const double turn = 2 * kPi / 500;  // a slot's worth at full speed

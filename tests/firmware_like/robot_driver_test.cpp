@@ -1,0 +1,168 @@
+#include "firmware_like/robot_driver.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "algo/core/scalar_math.hpp"
+#include "hal/sim/random.hpp"
+#include "tests/support/fake_base.hpp"
+
+using namespace st;
+
+namespace {
+
+constexpr double kFrame_s = 1.0 / 30.0, kReport_s = 0.015;
+const Pose2 kObjectBase{0.03, -0.02, 2.1};  // the robot's base in the frame of the tracked object
+
+Path long_line() {
+  Path path;
+  path.add_line(10);
+  path.plan();
+  return path;
+}
+
+// The loop around a driver in simulated time: a robot that does what it is told, its reports, its guard, and
+// a camera that sees it as object 1.
+class Rig {
+ public:
+  Rig(Steering steering, const Path* path) : driver(base, steering, path, nullptr, Reaction::kEnd) {}
+
+  // Time passes until the next frame, which the driver then decides on.
+  void frame(double gap_s = kFrame_s) {
+    const double frame_s = t_s + gap_s;
+    for (double wait_s = t_s + 0.1; wait_s < frame_s; wait_s += 0.1) {
+      roll(wait_s);
+      driver.wait_without_frame(t_s);
+    }
+    roll(frame_s);
+    auto input = std::make_unique<FrameInput>();
+    input->t_s = input->device_t_s = t_s;
+    driver.listen(input->odometry);
+    trail.take(*input);
+    DriverView view;
+    view.sight = {true, true, 0};
+    view.wheels = input->wheels;
+    if (robot_seen) view.objects.push_back(object(1, pose));
+    if (stranger_seen) view.objects.push_back(object(2, {2, 1, 0.3}));
+    view.trail = &trail;
+    view.t_s = view.host_now_s = t_s;
+    driver.decide(t_s, view);
+    driver.send();
+    told_s_ = t_s;
+  }
+  void frames(double for_s) {
+    for (const double until_s = t_s + for_s; t_s < until_s;) frame();
+  }
+  bool stands() const { return base.left == 0 && base.right == 0; }
+
+  FakeBase base;
+  RobotDriver driver;
+  WheelTrail trail{0.235, 0};
+  Pose2 pose;
+  double t_s = 100;
+  bool moves = true;  // when it is told to
+  bool robot_seen = true, stranger_seen = false;
+  double farthest_m = 0, farthest_rad = 0;
+
+ private:
+  static SeenObject object(int id, const Pose2& base) {
+    SeenObject object;
+    object.id = id;
+    object.good = object.has_heading = true;
+    object.pose = compose(base, inverse(kObjectBase));
+    return object;
+  }
+  void roll(double until_s) {
+    while (t_s < until_s) {
+      const double next_s = std::min(until_s, report_s_ + kReport_s), dt_s = next_s - t_s;
+      if (t_s - told_s_ > 0.001 * kGuardPatience_ms) base.stop();
+      slot_.left_m += base.left * dt_s;
+      slot_.right_m += base.right * dt_s;
+      if (moves)
+        pose = advanced(pose, 0.5 * (base.left + base.right) * dt_s, (base.right - base.left) / 0.235 * dt_s);
+      farthest_m = std::max(farthest_m, std::hypot(pose.x, pose.y));
+      farthest_rad = std::max(farthest_rad, std::fabs(pose.yaw));
+      t_s = next_s;
+      if (t_s < report_s_ + kReport_s) continue;
+      slot_.t_s = report_s_ = t_s;
+      base.reports.push_back(slot_);
+      slot_ = {};
+    }
+  }
+
+  double report_s_ = t_s, told_s_ = t_s;
+  OdometrySample slot_;
+};
+
+}  // namespace
+
+TEST_GROUP(RobotDriver){};
+
+TEST(RobotDriver, TheDriverStandsForAsLongAsItIsHeldAndGoesOnWithItsPath) {
+  FakeBase base;
+  const Path path = long_line();
+  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kHold);
+  FixedVector<OdometrySample, 64> odometry;
+  DriverView view;
+  const auto drive = [&](double from_s, double to_s, const Sight& sight) {
+    for (double t = from_s; t < to_s; t += 1 / 30.0) {
+      driver.listen(odometry);
+      view.sight = sight;
+      driver.decide(t, view);
+      driver.send();
+    }
+  };
+  drive(0, 4, {true, true, 0.02});
+  DOUBLES_EQUAL(0.2, base.left, 0.01);
+  drive(4, 8, {true, true, 0.5});  // frames come half a second late
+  DOUBLES_EQUAL(0.0, base.left, 0);
+  CHECK(driver.held_by() == RobotFault::kStale && driver.fault() == RobotFault::kNone);
+  drive(8, 9, {true, true, 0.02});
+  DOUBLES_EQUAL(0.2, base.left, 0.01);
+  driver.wait_without_frame(9.1);
+  CHECK(base.left > 0);
+  driver.wait_without_frame(9.3);
+  DOUBLES_EQUAL(0.0, base.left, 0);
+  drive(9.4, 10, {true, true, 0.02});
+  base.fault = RobotFault::kCliff;
+  drive(10, 10.1, {true, true, 0.02});
+  DOUBLES_EQUAL(0.0, base.left, 0);
+  CHECK(driver.fault() == RobotFault::kCliff);
+}
+
+// A loop that is starved has frames a fifth of a second apart: the wheels must not be thrown to and fro.
+TEST(RobotDriver, LateFramesDoNotMakeTheDriverOvershoot) {
+  FakeBase base;
+  Path path;
+  path.add_line(0.5);
+  path.plan();
+  RobotDriver driver(base, Steering::kOpenLoop, &path, nullptr, Reaction::kEnd);
+  DriverView view;
+  view.sight = {true, true, 0.1};
+  double way_m = 0;
+  for (double t = 0; t < 12; t += 0.19) {
+    driver.decide(t, view);
+    driver.send();
+    CHECK(base.left > -0.03 && base.left < 0.26);
+    way_m += 0.19 * base.left;
+  }
+  DOUBLES_EQUAL(0.5, way_m, 0.01);
+}
+
+// Frames that come when they like, with a stall now and then: the start motion keeps its allowance.
+TEST(RobotDriver, TheStartMotionStaysWithinItsAllowanceHoweverFramesCome) {
+  const Path path = long_line();
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    sim::Random random(seed);
+    Rig rig(Steering::kClosedLoop, &path);
+    const double longest_s = 0.06 + 0.5 * random.uniform();
+    while (rig.driver.picked().id == 0 && rig.driver.fault() == RobotFault::kNone)
+      rig.frame(0.005 + random.uniform() * random.uniform() * longest_s);
+    CHECK(rig.farthest_m > 0.03 && rig.farthest_rad > 0.1);
+    CHECK(rig.farthest_m <= kStartAllowance_m + 0.001);
+    CHECK(rig.farthest_rad <= kStartAllowance_rad + 0.005);
+  }
+}
