@@ -108,7 +108,7 @@ bool watch(int port, int link, int signals, const GuardOrders& orders, Outbox& o
       std::uint8_t command[oi::Command::kCapacity];
       const ssize_t n = recv(link, command, sizeof command, MSG_DONTWAIT);
       if (n == 0 || (n < 0 && errno != EAGAIN)) return true;  // the program is no more
-      if (n > 0 && !oi::hears_no_stop_after(command[0])) out.add({command, static_cast<std::size_t>(n)});
+      if (n > 0 && !oi::escapes_guard(command[0])) out.add({command, static_cast<std::size_t>(n)});
       if (n > 0 && oi::drives(command[0])) silent_at_ms = now_ms() + orders.silence_ms;
     }
     if ((events[0].revents & ~POLLOUT) != 0 && !pass_from_robot(port, link)) return false;

@@ -6,8 +6,8 @@
 // thing that the robot then hears is stop; for a while even when the program has ended meanwhile, since it is
 // then that a robot may be driving on with nobody to stop it.
 //
-// Commands by which the robot would drive on its own (cleaning, demos, docking) or stop listening (waits,
-// scripts) do not pass: no stop would be heard.
+// Commands by which the robot would drive on its own (cleaning, demos, docking), stop listening (waits,
+// scripts, another baud rate) or heed no edge (Full mode) do not pass.
 //
 // The program and the guard speak over one socket that keeps messages whole. To the guard: one Open Interface
 // command per message; those that drive are the heartbeats. From the guard: a byte that says which way, then

@@ -75,11 +75,12 @@ constexpr bool drives(std::uint8_t opcode) {
 }
 
 // After these the robot goes where it likes or hears no stop: Spot, Clean or Cover, Demo or Max, Dock,
-// scripts and waits, and on a Create 2 its own buttons and schedule.
-constexpr bool hears_no_stop_after(std::uint8_t opcode) {
-  return opcode == kSpot || opcode == kCover || opcode == kDemo || opcode == kSeekDock || opcode == kScript ||
-         opcode == kPlayScript || (opcode >= kWaitTime && opcode <= kWaitEvent) || opcode == kButtons ||
-         opcode == kSchedule;
+// scripts and waits, another baud rate, and on a Create 2 its own buttons and schedule. And Full mode, in
+// which it drives over an edge before anybody could stop it.
+constexpr bool escapes_guard(std::uint8_t opcode) {
+  return opcode == kBaud || opcode == kFull || opcode == kSpot || opcode == kCover || opcode == kDemo ||
+         opcode == kSeekDock || opcode == kScript || opcode == kPlayScript ||
+         (opcode >= kWaitTime && opcode <= kWaitEvent) || opcode == kButtons || opcode == kSchedule;
 }
 
 // One whole command.

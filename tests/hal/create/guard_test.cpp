@@ -156,9 +156,9 @@ TEST(Guard, EveryCommandThatDrivesIsAHeartbeat) {
   }
 }
 
-TEST(Guard, LetsNothingPassAfterWhichNoStopIsHeard) {
+TEST(Guard, LetsNothingPassByWhichTheRobotWouldEscapeIt) {
   drain(master, 20);
-  for (const int opcode : {134, 135, 136, 143, 152, 153, 155, 156, 157, 158, 165, 167}) {
+  for (const int opcode : {129, 132, 134, 135, 136, 143, 152, 153, 155, 156, 157, 158, 165, 167}) {
     oi::Command command;
     command.add(opcode);
     say(command);
