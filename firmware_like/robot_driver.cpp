@@ -13,9 +13,9 @@ constexpr double kLaying_s = 0.6;  // it stands, and its pose settles
 
 }  // namespace
 
-RobotDriver::RobotDriver(DriveBase& robot, Steering steering, const Path* path, ClientCommands* commands,
+RobotDriver::RobotDriver(DriveBase& robot, Steering steering, const Path* path, NewestCommand* command,
                          Reaction on_bump)
-    : robot_(robot), steering_(steering), path_(path), commands_(commands), supervisor_(on_bump) {}
+    : robot_(robot), steering_(steering), path_(path), command_(command), supervisor_(on_bump) {}
 
 const SeenObject* RobotDriver::robot_in(const SeenObjects& objects) const {
   for (const SeenObject& object : objects)
@@ -139,11 +139,10 @@ WheelSpeeds RobotDriver::path_speeds(double passed_s) {
 }
 
 WheelSpeeds RobotDriver::client_speeds(double now_s) {
-  while (commands_->pop(command_)) {
-  }
-  const double age_s = now_s - static_cast<double>(command_.monotonic_ns) * 1e-9;
-  if (command_.monotonic_ns == 0 || age_s > kClientPatience_s) return {};
-  return wheel_speeds(command_.v_mps, command_.w_rps, wheel_base_m());
+  const ClientCommand command = command_->take();
+  const double age_s = now_s - static_cast<double>(command.monotonic_ns) * 1e-9;
+  if (command.monotonic_ns == 0 || age_s > kClientPatience_s) return {};
+  return wheel_speeds(command.v_mps, command.w_rps, wheel_base_m());
 }
 
 // A start motion is short enough for a frame that is a little late to lead beyond it.

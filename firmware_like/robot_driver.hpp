@@ -32,8 +32,8 @@ struct DriverView {
 
 class RobotDriver {
  public:
-  // Robot, path and commands outlive the driver. `path`: null for a client; `commands`: null without one.
-  RobotDriver(DriveBase& robot, Steering steering, const Path* path, ClientCommands* commands,
+  // Robot, path and command outlive the driver. `path`: null for a client; `command`: null without one.
+  RobotDriver(DriveBase& robot, Steering steering, const Path* path, NewestCommand* command,
               Reaction on_bump);
 
   // What the robot has told since the last call; once a frame, before decide().
@@ -85,7 +85,7 @@ class RobotDriver {
   DriveBase& robot_;
   Steering steering_;
   const Path* path_;
-  ClientCommands* commands_;
+  NewestCommand* command_;
   SafetySupervisor supervisor_;
   Reaction held_ = Reaction::kNone;
   WheelSpeeds speeds_;
@@ -107,7 +107,6 @@ class RobotDriver {
   BaseTracker base_;
   Pose2 base_now_;  // carried on to when the next command acts
   MotionMatch match_;
-  ClientCommand command_;
 };
 
 }  // namespace st

@@ -138,7 +138,7 @@ SessionResult run_session(const SessionOptions& options) {
   std::optional<RobotDriver> driver;
   if (robot)
     driver.emplace(*robot, steering_of(options), path ? &*path : nullptr,
-                   server ? &server->commands() : nullptr, options.on_bump);
+                   server ? &server->command() : nullptr, options.on_bump);
   const std::unique_ptr<Loop> loop =
       mode->make_loop({*source, telemetry, budget, system_clock(), writer, driver ? &*driver : nullptr,
                        server ? &*server : nullptr, recorder ? &*recorder : nullptr});

@@ -140,12 +140,12 @@ void PoseServer::take_line(Client& client, std::string_view line) {
   }
   driver_ = client.fd;
   command.monotonic_ns = system_clock().monotonic_ns();
-  commands_.push(command);
+  command_.put(command);
 }
 
 void PoseServer::drop(Client& client) {
   if (client.fd == driver_) {
-    commands_.push({system_clock().monotonic_ns(), 0, 0});
+    command_.put({system_clock().monotonic_ns(), 0, 0});
     driver_ = -1;
   }
   close(client.fd);

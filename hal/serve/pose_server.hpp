@@ -1,6 +1,6 @@
 // `run --serve`: what the tracker sees, as a JSON line per frame, for programs in any language; and what the
-// program that steers by it asks the robot to do. Compute thread and server meet in two rings; all text, all
-// sockets and all memory for them are the server thread's.
+// program that steers by it asks the robot to do. Compute thread and server meet in a ring of frames and in
+// the newest command; all text, all sockets and all memory for them are the server thread's.
 //
 // To the client: one object per line, see hal/serve/served_frame.hpp. From the client: `drive V W` (m/s,
 // rad/s, left positive) and `stop`, a line each. The first client that sends either steers until it goes; it
@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "hal/create/spsc_ring.hpp"
 #include "hal/serve/client_command.hpp"
 #include "hal/serve/served_frame.hpp"
 
@@ -33,7 +34,7 @@ class PoseServer {
   // Compute thread: hands a frame on. No heap, no lock, no wait; a full ring drops the frame.
   void offer(const ServedFrame& frame);
   // For the compute thread to read.
-  ClientCommands& commands() { return commands_; }
+  NewestCommand& command() { return command_; }
 
  private:
   struct Client {
@@ -50,7 +51,7 @@ class PoseServer {
   bool takes_commands_;
   int listener_ = -1, wake_ = -1;
   SpscRing<ServedFrame, 32> frames_;
-  ClientCommands commands_;
+  NewestCommand command_;
   std::vector<Client> clients_;
   int driver_ = -1;  // descriptor of the client that steers
   std::atomic<bool> stopping_{false};
