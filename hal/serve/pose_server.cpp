@@ -19,6 +19,7 @@ namespace st {
 namespace {
 
 constexpr std::size_t kMostClients = 8, kLongestLine = 200;
+constexpr std::size_t kMostUnread_bytes = 4096;  // of answers that a client does not read
 
 }  // namespace
 
@@ -84,7 +85,7 @@ void PoseServer::accept_client() {
   }
   const int yes = 1;  // a frame waits for no other
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  clients_.push_back({fd, {}, {}});
+  clients_.push_back({fd, false, {}, {}});
 }
 
 // A client that is too slow for a frame misses it, whole.
@@ -110,8 +111,12 @@ bool PoseServer::serve(Client& client, short events) {
     if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) return false;
     for (ssize_t i = 0; i < n; ++i) {
       if (bytes[i] == '\n') {
-        take_line(client, client.in);
+        const bool speaks = take_line(client, client.in);
         client.in.clear();
+        if (!speaks) {
+          send(client.fd, client.out.data(), client.out.size(), MSG_NOSIGNAL);
+          return false;
+        }
       } else if (client.in.size() < kLongestLine) {
         client.in += bytes[i];
       }
@@ -125,22 +130,24 @@ bool PoseServer::serve(Client& client, short events) {
   return true;
 }
 
-void PoseServer::take_line(Client& client, std::string_view line) {
+// False: its first line is none of ours. A web page can make a browser post what it likes to this computer's
+// own ports, drive commands among it, but not without the browser's words before them.
+bool PoseServer::take_line(Client& client, std::string_view line) {
   ClientCommand command;
   std::string error;
-  if (parse_client_line(line, command, error)) {
-    if (!takes_commands_)
-      error = "there is no robot to drive here; start run with --robot and without --path";
-    else if (driver_ >= 0 && driver_ != client.fd)
-      error = "another client steers; it has to close its connection first";
-  }
+  client.understood = parse_client_line(line, command, error) || client.understood;
+  if (error.empty() && !takes_commands_)
+    error = "there is no robot to drive here; start run with --robot and without --path";
+  else if (error.empty() && driver_ >= 0 && driver_ != client.fd)
+    error = "another client steers; it has to close its connection first";
   if (!error.empty()) {
-    client.out += "{\"error\": \"" + error + "\"}\n";
-    return;
+    if (client.out.size() < kMostUnread_bytes) client.out += "{\"error\": \"" + error + "\"}\n";
+    return client.understood;
   }
   driver_ = client.fd;
   command.monotonic_ns = system_clock().monotonic_ns();
   command_.put(command);
+  return true;
 }
 
 void PoseServer::drop(Client& client) {

@@ -4,7 +4,8 @@
 //
 // To the client: one object per line, see hal/serve/served_frame.hpp. From the client: `drive V W` (m/s,
 // rad/s, left positive) and `stop`, a line each. The first client that sends either steers until it goes; it
-// has to say `drive` again at least every half second (kClientPatience_s). Its end stops the robot.
+// has to say `drive` again at least every half second (kClientPatience_s). Its end stops the robot. A client
+// whose first line is neither is no client: its connection is closed.
 #pragma once
 
 #include <atomic>
@@ -39,13 +40,14 @@ class PoseServer {
  private:
   struct Client {
     int fd = -1;
+    bool understood = false;  // a line of it was
     std::string in, out;
   };
   void run();
   void accept_client();
   void send_frames();
   bool serve(Client& client, short events);
-  void take_line(Client& client, std::string_view line);
+  bool take_line(Client& client, std::string_view line);
   void drop(Client& client);
 
   bool takes_commands_;

@@ -27,7 +27,8 @@ struct ServedFrame {
 
 // One line, with LF.
 std::string json_line(const ServedFrame& frame);
-// A line from a client: true when it is a command that can be obeyed, else `error` says why not.
+// A line from a client: true when it is a command, else `error` says why not. One that asks for too much is a
+// command too, but is not to be obeyed: `error` says so.
 bool parse_client_line(std::string_view line, ClientCommand& command, std::string& error);
 
 }  // namespace st

@@ -181,6 +181,8 @@ TEST(PoseServer, AStopIsNeverLost) {
 TEST(PoseServer, WhatIsNotUnderstoodIsSaidAndObeyedByNobody) {
   begin(true);
   Client client(server->port());
+  client.say("drive 0 0\n");
+  const ClientCommand first = taken(*server);
   for (const char* line : {"go\n", "drive\n", "drive 0.1\n", "drive 0.1 nan\n", "drive 0.1 0.2 0.3\n", "\n",
                            "drive 0.6 0\n", "drive 0 9\n", "stop now\n", "drive 1e999 0\n"}) {
     client.say(line);
@@ -190,15 +192,45 @@ TEST(PoseServer, WhatIsNotUnderstoodIsSaidAndObeyedByNobody) {
   CHECK(client.line().find("\"error\"") != std::string::npos);
   client.say("dri");
   client.say("ve 0.3 0.1\r\n");
-  const ClientCommand last = taken(*server);
+  const ClientCommand last = taken(*server, first.monotonic_ns);
   DOUBLES_EQUAL(0.3, last.v_mps, 1e-7);
   DOUBLES_EQUAL(0.1, last.w_rps, 1e-7);
+}
+
+// What a web page lets a browser post to this computer's own ports.
+TEST(PoseServer, ABrowserDrivesNoRobot) {
+  begin(true);
+  Client browser(server->port());
+  browser.say("POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\ndrive 0.3 0\r\n");
+  CHECK(browser.line().find("not understood") != std::string::npos);
+  STRCMP_EQUAL("", browser.line().c_str());  // closed
+  CHECK(server->command().take().monotonic_ns == 0);
+  Client student(server->port());  // a student's first line may ask for too much
+  student.say("drive 0.9 0\n");
+  CHECK(student.line().find("too fast") != std::string::npos);
+  student.say("drive 0.2 0\n");
+  DOUBLES_EQUAL(0.2, taken(*server).v_mps, 1e-7);
+}
+
+TEST(PoseServer, WhatAClientDoesNotReadIsNotKeptForIt) {
+  begin(true);
+  Client lazy(server->port());
+  lazy.say("stop\n");
+  constexpr int kWrong = 400000;
+  for (int i = 0; i < kWrong; i += 1000) {
+    std::string wrong;
+    for (int k = 0; k < 1000; ++k) wrong += "?\n";
+    lazy.say(wrong);
+  }
+  int answers = 0;
+  while (!lazy.line().empty()) ++answers;
+  CHECK(answers > 0 && answers < kWrong);
 }
 
 TEST(PoseServer, AClientThatDoesNotReadDelaysNobody) {
   begin(false);
   Client lazy(server->port()), keen(server->port());
-  keen.say("x\n");
+  keen.say("stop\n");
   keen.line();
   ServedFrame frame = a_frame();
   for (std::uint64_t i = 0; i < 20000; ++i) {  // far more than a socket holds
