@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "algo/core/scalar_math.hpp"
 #include "hal/sim/random.hpp"
@@ -28,7 +29,7 @@ Path long_line() {
 // a camera that sees it as object 1.
 class Rig {
  public:
-  Rig(Steering steering, const Path* path) : driver(base, steering, path, nullptr, Reaction::kEnd) {}
+  Rig(Steering steering, const Path* path) : driver(base, steering, path, &command, Reaction::kEnd) {}
 
   // Time passes until the next frame, which the driver then decides on.
   void frame(double gap_s = kFrame_s) {
@@ -56,9 +57,22 @@ class Rig {
   void frames(double for_s) {
     for (const double until_s = t_s + for_s; t_s < until_s;) frame();
   }
+  // Until the start motion has told which object is the robot, and it drives.
+  void pick() {
+    for (int i = 0; i < 600 && driver.served().state != std::string("driving"); ++i) frame();
+    LONGS_EQUAL(1, driver.picked().id);
+  }
+  void ask(double v_mps, double w_rps) { command.put({static_cast<std::int64_t>(t_s * 1e9), v_mps, w_rps}); }
+  // How long it goes on from now; longer than `most_s` when it does not stop.
+  double moves_for_s(double most_s) {
+    const double from_s = t_s;
+    while (!stands() && t_s - from_s <= most_s) frame();
+    return t_s - from_s;
+  }
   bool stands() const { return base.left == 0 && base.right == 0; }
 
   FakeBase base;
+  NewestCommand command;
   RobotDriver driver;
   WheelTrail trail{0.235, 0};
   Pose2 pose;
@@ -164,5 +178,68 @@ TEST(RobotDriver, TheStartMotionStaysWithinItsAllowanceHoweverFramesCome) {
     CHECK(rig.farthest_m > 0.03 && rig.farthest_rad > 0.1);
     CHECK(rig.farthest_m <= kStartAllowance_m + 0.001);
     CHECK(rig.farthest_rad <= kStartAllowance_rad + 0.005);
+  }
+}
+
+// Something else is seen all the while, and stays good: it is not the robot.
+TEST(RobotDriver, TheRobotItselfHasToBeSeen) {
+  const Path path = long_line();
+  for (const Steering steering : {Steering::kClosedLoop, Steering::kClient}) {
+    Rig rig(steering, steering == Steering::kClosedLoop ? &path : nullptr);
+    rig.stranger_seen = true;
+    rig.pick();
+    for (int i = 0; i < 15; ++i) rig.ask(0.1, 0), rig.frame();
+    CHECK_FALSE(rig.stands());
+    CHECK(rig.driver.served().seen);
+    rig.robot_seen = false;
+    const double lost_s = rig.t_s, lost_x_m = rig.pose.x;
+    while (rig.driver.fault() == RobotFault::kNone && rig.t_s < lost_s + 10) rig.ask(0.1, 0), rig.frame();
+    CHECK(rig.driver.fault() == RobotFault::kNotSeen);
+    CHECK(rig.stands());
+    CHECK(rig.t_s - lost_s <= kBlindTime_s + 2 * kFrame_s);
+    CHECK(rig.pose.x - lost_x_m <= kBlindDistance_m + 0.02);
+  }
+}
+
+TEST(RobotDriver, AClientIsObeyedAfterTheStartMotionAloneAndForAsLongAsItSpeaks) {
+  Rig rig(Steering::kClient, nullptr);
+  rig.ask(0.2, 0);
+  while (rig.driver.served().state == std::string("learning")) {
+    CHECK(rig.stands());
+    rig.ask(0.2, 0);
+    rig.frame();
+  }
+  rig.pick();
+  CHECK(rig.stands());  // what it asked for meanwhile is old
+  for (int i = 0; i < 30; ++i) rig.ask(0.2, 0.4), rig.frame();
+  DOUBLES_EQUAL(0.2 - 0.4 * 0.5 * 0.235, rig.base.left, 1e-6);
+  DOUBLES_EQUAL(0.2 + 0.4 * 0.5 * 0.235, rig.base.right, 1e-6);
+  const double silent_s = rig.moves_for_s(5);  // alive, but it says nothing any more
+  CHECK(silent_s > kClientPatience_s - 2 * kFrame_s && silent_s <= kClientPatience_s + 2 * kFrame_s);
+  CHECK(rig.driver.fault() == RobotFault::kNone);
+  rig.ask(0.2, 0);
+  rig.frame();
+  DOUBLES_EQUAL(0.2, rig.base.left, 1e-6);
+  rig.ask(0, 0);
+  rig.ask(0.2, 0);
+  rig.frame();
+  CHECK(rig.stands());  // a stop is never overlooked
+}
+
+TEST(RobotDriver, NothingIsDrivenWhenNothingObeys) {
+  const Path path = long_line();
+  for (const Steering steering : {Steering::kClosedLoop, Steering::kClient}) {
+    Rig rig(steering, steering == Steering::kClosedLoop ? &path : nullptr);
+    rig.moves = false;  // what is seen is another robot, which stands
+    while (rig.driver.fault() == RobotFault::kNone && rig.t_s < 200) {
+      rig.ask(0.3, 0);
+      rig.frame();
+      CHECK(std::fabs(rig.base.left) < 0.2);  // never more than a start motion
+    }
+    CHECK(rig.driver.fault() == RobotFault::kNotSeen);
+    LONGS_EQUAL(0, rig.driver.picked().id);
+    rig.ask(0.3, 0);
+    rig.frames(1);
+    CHECK(rig.stands());
   }
 }
