@@ -100,6 +100,9 @@ TEST(BadInput, WordsOfTheCommandLine) {
                 "--loop closed needs --robot PORT and --path FILE");
   check_refused({"run", "--source", "sim:lab", "--robot", "sim", "--out", folder / "run"},
                 "what shall it do?");
+  check_refused({"run", "--source", "sim:lab", "--mode", "scan", "--robot", "sim", "--path",
+                 STARTRACK_SOURCE_DIR "/examples/paths/circle-0.5.toml", "--out", folder / "run"},
+                "--mode scan");
   check_refused({"run", "--source", "sim:lab", "--serve", "no-port", "--out", folder / "run"}, "no-port");
   check_refused({"run", "--source", "sim:lab", "--record", folder / "good", "--out", folder / "run"},
                 "good: is not empty");
