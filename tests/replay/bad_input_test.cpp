@@ -111,6 +111,9 @@ TEST(BadInput, WordsOfTheCommandLine) {
   check_refused({"drive", "--robot", "sim", "--wheels", file("w.toml", "wheelbase = 1\n"), "--path", "p"},
                 "w.toml:1: unknown key");
   check_refused({"calibrate", "robot", "--run", folder / "good", "--recording", folder / "good"},
+                "good/robot.log: not there");
+  file("good/robot.log", "# model create2\n");
+  check_refused({"calibrate", "robot", "--run", folder / "good", "--recording", folder / "good"},
                 "is not a run");
   const std::string truth = file("truth.tum", "1 0 0 0 0 0 0 1\n");
   check_refused({"evaluate", folder / "good", "--truth", truth}, "good: is no run");

@@ -7,7 +7,7 @@
 #include "algo/control/dead_reckoning.hpp"
 #include "algo/control/wheel_fit.hpp"
 #include "firmware_like/run_study.hpp"
-#include "hal/create/odometry_decoder.hpp"
+#include "hal/create/wheel_log.hpp"
 #include "hal/create/wheels_file.hpp"
 #include "hal/error.hpp"
 #include "hal/results/run_record.hpp"
@@ -26,8 +26,7 @@ struct Arguments {
 struct Drive {
   std::string name;
   std::vector<PlanarSample> base;
-  std::vector<OdometrySample> travel;
-  RobotGeometry wheels;  // by which the travel was counted
+  WheelLog log;
 };
 
 std::vector<PlanarSample> base_of(const std::string& folder) {
@@ -48,22 +47,6 @@ std::vector<PlanarSample> base_of(const std::string& folder) {
   return best->driven;
 }
 
-Drive load(const std::string& run, const std::string& recording) {
-  Drive drive;
-  drive.name = run;
-  drive.base = base_of(run);
-  RobotLogReader log;
-  if (!log.open(recording + "/robot.log") || !log.model())
-    throw Failure(ExitCode::kBadInput, recording +
-                                           "/robot.log: not there, or it names no model; record with "
-                                           "run --robot PORT --record DIR");
-  drive.wheels = log.geometry().value_or(oi::default_geometry(*log.model()));
-  const RobotBytes decode = decode_odometry(
-      *log.model(), drive.wheels, [&](const OdometrySample& sample) { drive.travel.push_back(sample); });
-  log.pump_until_time(1e18, decode);
-  return drive;
-}
-
 // The drives one after the other, an hour apart, so that no stretch spans two.
 struct Together {
   std::vector<PlanarSample> base;
@@ -74,9 +57,9 @@ Together join(const std::vector<Drive>& drives) {
   WheelMark at;
   double shift_s = 0;
   for (const Drive& drive : drives) {
-    if (drive.base.empty() || drive.travel.empty()) continue;
-    shift_s += 3600 - drive.travel.front().t_s;
-    for (const OdometrySample& sample : drive.travel) {
+    if (drive.base.empty() || drive.log.travel.empty()) continue;
+    shift_s += 3600 - drive.log.travel.front().t_s;
+    for (const OdometrySample& sample : drive.log.travel) {
       at = {sample.t_s + shift_s, at.left_m + sample.left_m, at.right_m + sample.right_m};
       all.marks.push_back(at);
     }
@@ -84,7 +67,7 @@ Together join(const std::vector<Drive>& drives) {
       sample.t_s += shift_s;
       all.base.push_back(sample);
     }
-    shift_s += drive.travel.back().t_s;
+    shift_s += drive.log.travel.back().t_s;
   }
   return all;
 }
@@ -93,14 +76,14 @@ Together join(const std::vector<Drive>& drives) {
 // measure of one square.
 Pose2 end_error(const Drive& drive, const WheelFit& fit, bool calibrated) {
   constexpr std::size_t kMean = 10;
-  DeadReckoning reckoning(calibrated ? fit.wheel_base_m : drive.wheels.wheel_base_m);
+  DeadReckoning reckoning(calibrated ? fit.wheel_base_m : drive.log.wheels.wheel_base_m);
   Pose2 begin, end;
   const auto seen = [&](std::size_t i) {
     const PlanarSample& p = drive.base[i];
     return Pose2{p.x_m, p.y_m, p.yaw_rad};
   };
   bool begun = false;
-  for (OdometrySample sample : drive.travel) {
+  for (OdometrySample sample : drive.log.travel) {
     if (sample.t_s < drive.base.front().t_s - fit.lag_s || sample.t_s > drive.base.back().t_s - fit.lag_s)
       continue;
     if (calibrated) sample.left_m *= fit.left_scale, sample.right_m *= fit.right_scale;
@@ -119,8 +102,13 @@ int calibrate(const Arguments& arguments) {
   if (arguments.runs.size() != arguments.recordings.size())
     throw Failure(ExitCode::kBadInput, "calibrate robot: give a --recording for every --run, in their order");
   std::vector<Drive> drives;
-  for (std::size_t i = 0; i < arguments.runs.size(); ++i)
-    drives.push_back(load(arguments.runs[i], arguments.recordings[i]));
+  // All counted by the wheels of the first drive, whatever each was driven with.
+  for (const std::string& recording : arguments.recordings)
+    drives.push_back({{}, {}, read_wheel_log(recording, drives.empty() ? nullptr : &drives.front().log)});
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    drives[i].name = arguments.runs[i];
+    drives[i].base = base_of(arguments.runs[i]);
+  }
   const Together all = join(drives);
   std::vector<FitWindow> memory(kFitWindows);
   const WheelFit fit = fit_wheels(all.base, all.marks, memory);
@@ -128,7 +116,7 @@ int calibrate(const Arguments& arguments) {
     throw Failure(ExitCode::kBadInput,
                   "calibrate robot: the drive does not tell the wheels; drive squares both ways "
                   "(examples/paths/umbmark-left.toml and umbmark-right.toml) in sight of the camera");
-  const RobotGeometry& before = drives.front().wheels;
+  const RobotGeometry& before = drives.front().log.wheels;
   MeasuredRobot robot;
   const double mean = 0.5 * (fit.left_scale + fit.right_scale);
   robot.wheels = {fit.wheel_base_m, before.wheel_diameter_m * mean, before.counts_per_turn,
