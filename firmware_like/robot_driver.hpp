@@ -59,8 +59,6 @@ class RobotDriver {
   double path_begins_t_s() const { return path_begins_t_s_; }
   // Open loop: the object that went with the wheels up to now; 0: none did.
   int went_along() const { return match_.best(); }
-  // The base, while it is known: picked() says so.
-  const BaseTracker& base() const { return base_; }
 
   // All that a client is told of the robot.
   ServedRobot served() const;

@@ -39,8 +39,6 @@ void BaseTracker::start(const Obedience& picked, const Pose2& object) {
   seen_ = true;
 }
 
-double BaseTracker::sigma_m() const { return std::sqrt(P_[0][0] > P_[1][1] ? P_[0][0] : P_[1][1]); }
-
 void BaseTracker::begin_at(const Pose2& base) {
   base_ = base;
   const double sigmas[kStates] = {kPlaceSigma_m, kPlaceSigma_m, kHeadingSigma_rad, kExtraTurn_rpm};

@@ -22,8 +22,6 @@ class BaseTracker {
 
   const Pose2& base() const { return base_; }  // floor frame, when the newest frame was taken
   bool seen() const { return seen_; }          // in the newest frame, where the wheels let it be
-  double sigma_m() const;                      // of its place, the larger one of x and y
-  const BaseFit& fit() const { return fit_; }
 
  private:
   static constexpr int kStates = 4;  // x, y, yaw; extra turn per metre

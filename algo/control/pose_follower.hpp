@@ -18,7 +18,6 @@ class PoseFollower {
   // before, during which the path's time went on.
   WheelSpeeds step(const Pose2& base, double passed_s);
 
-  double time_s() const { return time_s_; }
   bool done() const;  // the path's time is over, and the robot is where it ends or has had its chance
   PathSample target() const { return sample(*path_, time_s_); }
 

@@ -44,8 +44,6 @@ BaseFit WheelRegression::fit(const BaseGuess& guess) const {
   fit.gain = std::sqrt(C * C + S * S);
   fit.valid = fit.gain > kLeastGain;
   fit.T_object_base = {bx, by, arc_tan2(S, C)};
-  fit.sigma_m = std::sqrt(ff_ / det);
-  fit.sigma_rad = fit.valid ? std::sqrt(ss / det) / fit.gain : kPi;
   return fit;
 }
 

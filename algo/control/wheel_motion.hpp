@@ -25,7 +25,6 @@ struct BaseFit {
   bool valid = false;
   double gain = 0;      // g: travel seen per travel of the wheels
   Pose2 T_object_base;  // turning centre, forward direction
-  double sigma_m = 0, sigma_rad = 0;
 };
 
 // What the shape says of the turning centre before anything has moved: the middle of what is seen of it.

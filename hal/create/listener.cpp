@@ -14,10 +14,14 @@ namespace st {
 
 int listen_at(const std::string& option, const std::string& address) {
   const std::string where = address.find(':') == std::string::npos ? "127.0.0.1:" + address : address;
-  const std::string port = where.substr(where.rfind(':') + 1);
-  if (port.empty() || port.find_first_not_of("0123456789") != std::string::npos)
+  const std::size_t colon = where.rfind(':');
+  const std::string host = where.substr(0, colon), port = where.substr(colon + 1);
+  if (host.empty() || port.empty() || port.find_first_not_of("0123456789") != std::string::npos)
     throw Failure(ExitCode::kBadInput, option + " " + address + ": is not [HOST:]PORT, such as 7171");
-  const PortAddress resolved = port_address("tcp:" + where, 0);
+  PortAddress resolved;
+  if (const char* error = resolve(host, port, resolved); error != nullptr)
+    throw Failure(ExitCode::kBadInput,
+                  option + " " + address + ": " + error + "; name this computer as others know it");
   const int fd = socket(resolved.host.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const int yes = 1;
   if (fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&

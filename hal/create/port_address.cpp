@@ -84,6 +84,18 @@ int open_connection(const PortAddress& address, int connect_ms) {
 
 }  // namespace
 
+const char* resolve(std::string host, const std::string& service, PortAddress& address) {
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  addrinfo wanted{}, *found = nullptr;
+  wanted.ai_socktype = SOCK_STREAM;
+  const int error = getaddrinfo(host.c_str(), service.c_str(), &wanted, &found);
+  if (error != 0) return gai_strerror(error);
+  std::memcpy(&address.host, found->ai_addr, found->ai_addrlen);
+  address.host_size = found->ai_addrlen;
+  freeaddrinfo(found);
+  return nullptr;
+}
+
 PortAddress port_address(const std::string& text, int baud) {
   PortAddress address;
   address.text = text;
@@ -96,20 +108,13 @@ PortAddress port_address(const std::string& text, int baud) {
     return address;
   }
   const std::size_t colon = text.rfind(':');
-  std::string host = text.substr(kTcp.size(), colon < kTcp.size() ? 0 : colon - kTcp.size());
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  const std::string host = text.substr(kTcp.size(), colon < kTcp.size() ? 0 : colon - kTcp.size());
   const std::string service = text.substr(colon + 1);
   if (host.empty() || service.empty() || service.find_first_not_of("0123456789") != std::string::npos)
     throw Failure(ExitCode::kBadInput, "robot port " + text + ": not tcp:HOST:PORT, such as tcp:laptop:7170");
-  addrinfo wanted{}, *found = nullptr;
-  wanted.ai_socktype = SOCK_STREAM;
-  const int error = getaddrinfo(host.c_str(), service.c_str(), &wanted, &found);
-  if (error != 0)
-    throw Failure(ExitCode::kDeviceFault, "robot port " + text + ": " + gai_strerror(error) +
-                                              "; check the name of the computer on the robot");
-  std::memcpy(&address.host, found->ai_addr, found->ai_addrlen);
-  address.host_size = found->ai_addrlen;
-  freeaddrinfo(found);
+  if (const char* error = resolve(host, service, address); error != nullptr)
+    throw Failure(ExitCode::kDeviceFault,
+                  "robot port " + text + ": " + error + "; check the name of the computer on the robot");
   return address;
 }
 

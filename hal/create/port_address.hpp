@@ -20,6 +20,9 @@ struct PortAddress {
 // A device's path, or `tcp:HOST:PORT`. Throws Failure (kBadInput, or kDeviceFault when HOST is not known).
 PortAddress port_address(const std::string& text, int baud);
 
+// Looks HOST (also [IPv6]) and PORT up. Null, or why not.
+const char* resolve(std::string host, const std::string& service, PortAddress& address);
+
 // Opens it: non-blocking, raw, claimed alone. The descriptor, or minus the error. A connection is waited for
 // at most so long. Only system calls.
 int open_port(const PortAddress& address, int connect_ms);

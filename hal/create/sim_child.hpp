@@ -16,8 +16,8 @@ bool is_simulated(const std::string& port);
 class SimChild {
  public:
   // Starts it and waits for its pseudo-terminal. The program run is this one (/proc/self/exe), or what the
-  // environment's STARTRACK_BINARY names. Throws Failure (kDeviceFault).
-  // For a switch that create-sim does not know it throws kBadInput's line by create-sim's own words.
+  // environment's STARTRACK_BINARY names. Throws Failure (kDeviceFault) when it does not come up, as for a
+  // switch that it does not know: what is wrong with that it says itself, on stderr.
   SimChild(const std::string& port, RobotModel model, std::uint64_t seed);
   ~SimChild();  // the simulated robot ends once nobody holds its lifeline
   SimChild(const SimChild&) = delete;

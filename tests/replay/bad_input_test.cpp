@@ -103,7 +103,9 @@ TEST(BadInput, WordsOfTheCommandLine) {
   check_refused({"run", "--source", "sim:lab", "--mode", "scan", "--robot", "sim", "--path",
                  STARTRACK_SOURCE_DIR "/examples/paths/circle-0.5.toml", "--out", folder / "run"},
                 "--mode scan");
-  check_refused({"run", "--source", "sim:lab", "--serve", "no-port", "--out", folder / "run"}, "no-port");
+  for (const char* address : {"no-port", ":7171", "host.invalid:7171"})
+    check_refused({"run", "--source", "sim:lab", "--serve", address, "--out", folder / "run"},
+                  (std::string("--serve ") + address + ": ").c_str());
   check_refused({"run", "--source", "sim:lab", "--record", folder / "good", "--out", folder / "run"},
                 "good: is not empty");
   for (const char* arena : {"1,2", "1,2;3,4", "1,2;3,4;x,6", "1;2;3"})
