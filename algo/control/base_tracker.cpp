@@ -23,12 +23,6 @@ double squared(double v) { return v * v; }
 
 }  // namespace
 
-Pose2 advanced(const Pose2& base, double forward_m, double turn_rad) {
-  const SinCos heading = sin_cos(base.yaw + 0.5 * turn_rad);
-  const double chord_m = forward_m * (1 - turn_rad * turn_rad / 24);
-  return {base.x + chord_m * heading.cos, base.y + chord_m * heading.sin, wrap_angle(base.yaw + turn_rad)};
-}
-
 void BaseTracker::start(const Obedience& picked, const Pose2& object) {
   *this = BaseTracker{};
   regression_ = picked.motion;

@@ -8,9 +8,6 @@
 
 namespace st {
 
-// The pose after the base has gone on along an arc.
-Pose2 advanced(const Pose2& base, double forward_m, double turn_rad);
-
 class BaseTracker {
  public:
   // Begins with what the start motion told.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "algo/control/wheel_motion.hpp"
 #include "algo/core/scalar_math.hpp"
 
 namespace st {
@@ -20,15 +21,13 @@ double squared(double v) { return v * v; }
 struct Motion {
   double a[3] = {0, 0, 0};  // ax, ay, s
 
-  // Adds the arc from p to q: the chord, seen in the mean heading, and the angle in the measure that makes
-  // the chord exact.
+  // Adds the arc from p to q, the angle in the measure that makes the chord exact.
   void add(const PlanarSample& p, const PlanarSample& q) {
-    const double turn = wrap_angle(q.yaw_rad - p.yaw_rad);
-    const SinCos heading = sin_cos(p.yaw_rad + 0.5 * turn);
-    const double dx = q.x_m - p.x_m, dy = q.y_m - p.y_m;
-    a[0] += heading.cos * dx + heading.sin * dy;
-    a[1] += heading.cos * dy - heading.sin * dx;
-    a[2] += 2.0 * sin_cos(0.5 * turn).sin;
+    BodyMotion step;
+    step.add({p.x_m, p.y_m, p.yaw_rad}, {q.x_m, q.y_m, q.yaw_rad});
+    a[0] += step.x_m;
+    a[1] += step.y_m;
+    a[2] += 2.0 * sin_cos(0.5 * step.turn_rad).sin;
   }
 };
 

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
+#include "algo/control/lag_search.hpp"
 #include "algo/core/scalar_math.hpp"
 
 namespace st {
 namespace {
 
 constexpr double kPause_s = 0.3;
-constexpr double kLongestCommand_s = 0.25;  // then the guard stops the robot
-constexpr double kLeastLag_s = -0.06, kMostLag_s = 0.20, kCoarse_s = 0.02, kFine_s = 0.0025;
+constexpr double kLongestCommand_s = 0.25;              // then the guard stops the robot
 constexpr double kSigma_m = 0.002, kSigma_rad = 0.012;  // of a tracked pose, for weighing the two
 // What obeying means. The wheels are as large as believed to within a quarter.
 constexpr std::size_t kLeastFrames = 30;
@@ -141,16 +141,8 @@ Obedience StartWitness::judge_one(int id) const {
   const std::size_t n = stretch_of(id, memory, guess);
   if (n < kLeastFrames) return {};
   const std::span<const Sample> samples = std::span<const Sample>(memory).first(n);
-  Obedience best = fit(id, samples, guess, 0);
-  const auto search = [&](double from_s, double until_s, double step_s) {
-    for (double lag_s = from_s; lag_s <= until_s; lag_s += step_s) {
-      const Obedience o = fit(id, samples, guess, lag_s);
-      if (o.misfit_m < best.misfit_m) best = o;
-    }
-  };
-  search(kLeastLag_s, kMostLag_s, kCoarse_s);
-  search(best.lag_s - kCoarse_s, best.lag_s + kCoarse_s, kFine_s);
-  return best;
+  return best_lag([&](double lag_s) { return fit(id, samples, guess, lag_s); },
+                  [](const Obedience& a, const Obedience& b) { return a.misfit_m < b.misfit_m; });
 }
 
 Obedience StartWitness::judge() const {

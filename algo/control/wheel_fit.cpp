@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "algo/control/lag_search.hpp"
 #include "algo/control/wheel_motion.hpp"
 #include "algo/core/scalar_math.hpp"
 
@@ -9,7 +10,6 @@ namespace st {
 namespace {
 
 constexpr double kWindow_s = 0.5, kLongestGap_s = 0.12;
-constexpr double kLeastLag_s = -0.06, kMostLag_s = 0.20, kCoarse_s = 0.02, kFine_s = 0.0025;
 constexpr int kRounds = 4;
 constexpr double kTrim = 3.0, kLeastTrim_rad = 0.01;  // windows further off than so many RMS are left out
 constexpr double kLeastTurn_rad = 3.0, kLeastWay_m = 1.0;
@@ -123,16 +123,10 @@ WheelFit fit_at(std::span<const PlanarSample> base, std::span<const WheelMark> m
 
 WheelFit fit_wheels(std::span<const PlanarSample> base, std::span<const WheelMark> marks,
                     std::span<FitWindow> memory) {
-  WheelFit best = fit_at(base, marks, 0, memory);
-  const auto search = [&](double from_s, double until_s, double step_s) {
-    for (double lag_s = from_s; lag_s <= until_s; lag_s += step_s) {
-      const WheelFit fit = fit_at(base, marks, lag_s, memory);
-      if (fit.valid && (!best.valid || fit.misfit_rad < best.misfit_rad)) best = fit;
-    }
-  };
-  search(kLeastLag_s, kMostLag_s, kCoarse_s);
-  if (best.valid) search(best.lag_s - kCoarse_s, best.lag_s + kCoarse_s, kFine_s);
-  return best;
+  return best_lag([&](double lag_s) { return fit_at(base, marks, lag_s, memory); },
+                  [](const WheelFit& a, const WheelFit& b) {
+                    return a.valid && (!b.valid || a.misfit_rad < b.misfit_rad);
+                  });
 }
 
 }  // namespace st

@@ -11,6 +11,13 @@ constexpr double kLeastGain = 0.3;  // below it there is no direction to speak o
 
 }  // namespace
 
+// The chord of the arc, at its middle heading; sin(x)/x to the order that a frame's turn needs.
+Pose2 advanced(const Pose2& base, double forward_m, double turn_rad) {
+  const SinCos heading = sin_cos(base.yaw + 0.5 * turn_rad);
+  const double chord_m = forward_m * (1 - turn_rad * turn_rad / 24);
+  return {base.x + chord_m * heading.cos, base.y + chord_m * heading.sin, wrap_angle(base.yaw + turn_rad)};
+}
+
 void BodyMotion::add(const Pose2& p, const Pose2& q) {
   const double turn = wrap_angle(q.yaw - p.yaw), dx = q.x - p.x, dy = q.y - p.y;
   const SinCos heading = sin_cos(p.yaw + 0.5 * turn);

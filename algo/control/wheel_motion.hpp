@@ -12,6 +12,9 @@
 
 namespace st {
 
+// The pose after the base has gone on along an arc.
+Pose2 advanced(const Pose2& base, double forward_m, double turn_rad);
+
 // An object's motion in its own axes, summed up over small steps.
 struct BodyMotion {
   double x_m = 0, y_m = 0, turn_rad = 0;

@@ -6,6 +6,7 @@
 
 #include "algo/control/dead_reckoning.hpp"
 #include "algo/control/wheel_fit.hpp"
+#include "algo/core/scalar_math.hpp"
 #include "firmware_like/run_study.hpp"
 #include "hal/create/wheel_log.hpp"
 #include "hal/create/wheels_file.hpp"

@@ -9,6 +9,7 @@
 
 #include "algo/control/dead_reckoning.hpp"
 #include "algo/control/follower.hpp"
+#include "algo/core/scalar_math.hpp"
 #include "firmware_like/path_file.hpp"
 #include "firmware_like/safety_supervisor.hpp"
 #include "hal/clock.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "algo/control/base_tracker.hpp"
+#include "algo/control/wheel_motion.hpp"
 #include "algo/core/scalar_math.hpp"
 #include "hal/sim/random.hpp"
 
