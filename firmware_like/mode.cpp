@@ -35,6 +35,7 @@ class ObjectRun final : public ModeRun {
     end.floor_found = tracker_.floor_found();
     end.has_floor_frame = tracker_.has_floor_frame();
     end.T_floor_camera = tracker_.T_floor_camera();
+    end.steering_object = tracker_.wheeled_id();
     end.objects = object_ends(tracker_, meshes_);
     if (tracks_by_matches(config_.tracker)) end.matching = matching_of(tracker_.match_counts());
   }

@@ -72,6 +72,8 @@ class ObjectTracker {
   void publish(FrameReport& report);
 
   // For the end of a run.
+  // The object that went along with the wheels up to now; 0: none did.
+  int wheeled_id() const { return wheeled_id_; }
   std::span<const Track> tracks() const { return tracks_; }
   const ObjectCounts& counts() const { return counts_; }
   int volume_side() const { return config_.volume_side; }  // voxels

@@ -25,7 +25,6 @@ const SeenObject* RobotDriver::robot_in(const SeenObjects& objects) const {
 
 // Whatever the robot is doing, its base is followed, or looked for.
 void RobotDriver::watch(const DriverView& view, double passed_s) {
-  if (steering_ == Steering::kOpenLoop) match_.add(view.wheels, view.objects);
   if (phase_ == Phase::kStartMotion) witness_.add(view.wheels, view.objects);
   if (picked_.id == 0) return;
   WheelOdometry wheels = view.wheels;

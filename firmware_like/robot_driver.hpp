@@ -8,7 +8,6 @@
 
 #include "algo/control/base_tracker.hpp"
 #include "algo/control/follower.hpp"
-#include "algo/control/motion_match.hpp"
 #include "algo/control/pose_follower.hpp"
 #include "algo/control/wheel_trail.hpp"
 #include "firmware_like/safety_supervisor.hpp"
@@ -57,8 +56,6 @@ class RobotDriver {
   const Obedience& picked() const { return picked_; }
   // Recording time from which on what it drives is the path; -1: from the first motion on.
   double path_begins_t_s() const { return path_begins_t_s_; }
-  // Open loop: the object that went with the wheels up to now; 0: none did.
-  int went_along() const { return match_.best(); }
 
   // All that a client is told of the robot.
   ServedRobot served() const;
@@ -104,7 +101,6 @@ class RobotDriver {
   double path_begins_t_s_ = -1;
   BaseTracker base_;
   Pose2 base_now_;  // carried on to when the next command acts
-  MotionMatch match_;
 };
 
 }  // namespace st

@@ -55,7 +55,7 @@ MatchingEnd matching_of(const MatchCounts& c) {
 }
 
 void name_steering_object(const RobotDriver& driver, RunEnd& end) {
-  end.steering_object = driver.picked().id != 0 ? driver.picked().id : driver.went_along();
+  if (driver.picked().id != 0) end.steering_object = driver.picked().id;
   end.path_begins_t_s = driver.path_begins_t_s();
 }
 

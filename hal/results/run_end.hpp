@@ -62,7 +62,9 @@ struct RunEnd {
   bool has_camera = false;  // scan mode
   CameraEnd camera;
   std::optional<MatchingEnd> matching;
-  int steering_object = 0;  // the object that was picked as the robot that obeys; 0: none was
+  // The object that is the robot: picked as the one that obeys, or else that went along with the wheels; 0:
+  // none.
+  int steering_object = 0;
   double path_begins_t_s =
       -1;  // what was driven before was the start motion; -1: the path began with the drive
   std::uint64_t planned_bytes = 0, peak_rss_bytes = 0, heap_calls_after_seal = 0, page_faults_after_seal = 0;

@@ -8,7 +8,6 @@
 
 #include "algo/control/base_tracker.hpp"
 #include "algo/control/follower.hpp"
-#include "algo/control/motion_match.hpp"
 #include "algo/control/pose_follower.hpp"
 #include "algo/core/scalar_math.hpp"
 #include "hal/sim/random.hpp"
@@ -278,18 +277,4 @@ TEST(ClosedLoop, AHeadingThatSlidesIsLeftOut) {
   }
   CHECK(worst_m < 0.015);
   CHECK(worst_rad < 0.12);
-}
-
-TEST(ClosedLoop, AnOpenLoopKnowsAfterwardsWhoWentAlong) {
-  MotionMatch match;
-  LONGS_EQUAL(0, match.best());
-  const WheelSpeeds told = wheel_speeds(0.2, 0.4, kBase_m);
-  for (int i = 0; i < 200; ++i) {
-    SeenObjects objects;
-    objects.push_back(seen(1, {i * 0.03, 0, 0}, random));  // walks straight on
-    objects.push_back(seen(2, robot.pose, random));
-    match.add(odometry(told, kFrame_s), objects);
-    robot.roll(told, kFrame_s);
-  }
-  LONGS_EQUAL(2, match.best());
 }
