@@ -1,42 +1,19 @@
 #include <CppUTest/TestHarness.h>
 
 #include <cmath>
-#include <initializer_list>
 
 #include "algo/core/scalar_math.hpp"
-#include "hal/create/sim/create_engine.hpp"
+#include "tests/hal/create/sim/engine_talk.hpp"
 
 using namespace st;
+using namespace st::test;
 using sim::CreateEngine;
-
-namespace {
-
-CreateEngine create1() {
-  sim::CreateOptions options;
-  options.model = RobotModel::kCreate1;
-  return CreateEngine(options);
-}
-
-void say(CreateEngine& robot, std::initializer_list<int> bytes, double wait_s = 0.02) {
-  std::vector<std::uint8_t> command;
-  for (const int b : bytes) command.push_back(static_cast<std::uint8_t>(b));
-  robot.receive(command);
-  robot.step(wait_s);
-}
-
-std::vector<std::uint8_t> hear(CreateEngine& robot) {
-  std::vector<std::uint8_t> bytes(10000);
-  bytes.resize(robot.transmit(bytes));
-  return bytes;
-}
-
-}  // namespace
 
 TEST_GROUP(CreateScript){};
 
 // The circle of the specification: 200 mm/s on 500 mm to the left, wait for 360 degrees, stop.
 TEST(CreateScript, DrivesACircleAndListensToNobodyMeanwhile) {
-  CreateEngine robot = create1();
+  CreateEngine robot = CreateEngine(create1());
   say(robot, {128, 131, 152, 13, 137, 0, 200, 1, 244, 157, 1, 104, 137, 0, 0, 0, 0});
   say(robot, {148, 1, 35}, 0.1);
   hear(robot);
@@ -56,14 +33,14 @@ TEST(CreateScript, DrivesACircleAndListensToNobodyMeanwhile) {
 }
 
 TEST(CreateScript, AWaitOfTheWrongSignNeverEnds) {
-  CreateEngine robot = create1();
+  CreateEngine robot = CreateEngine(create1());
   say(robot, {128, 131, 152, 8, 137, 0, 200, 1, 244, 157, 254, 152, 153}, 60);
   CHECK(robot.in_script_wait());
   CHECK(robot.body().pose().yaw > 4 * kPi);
 }
 
 TEST(CreateScript, ItsReflexesStillGuardItInAWait) {
-  CreateEngine robot = create1();
+  CreateEngine robot = CreateEngine(create1());
   say(robot, {128, 131, 152, 8, 137, 0, 200, 1, 244, 155, 200, 137, 0, 153}, 1);
   robot.world().wheel_drops = 4;
   robot.step(0.5);
@@ -72,7 +49,7 @@ TEST(CreateScript, ItsReflexesStillGuardItInAWait) {
 }
 
 TEST(CreateScript, WaitsForDistanceTimeAndEvents) {
-  CreateEngine robot = create1();
+  CreateEngine robot = CreateEngine(create1());
   say(robot, {128, 131, 145, 0, 200, 0, 200, 156, 1, 44, 145, 0, 0, 0, 0}, 3);  // 300 mm, then stop
   CHECK(robot.standing());
   DOUBLES_EQUAL(0.3, robot.body().pose().x, 0.02);
@@ -93,19 +70,19 @@ TEST(CreateScript, WaitsForDistanceTimeAndEvents) {
 }
 
 TEST(CreateScript, AScriptThatPlaysItselfGoesOnForEver) {
-  CreateEngine robot = create1();
+  CreateEngine robot = CreateEngine(create1());
   say(robot, {128, 131, 152, 8, 145, 0, 100, 0, 100, 155, 1, 153}, 0.1);
   say(robot, {153}, 10);
   DOUBLES_EQUAL(0.1, robot.body().v(), 1e-9);
   say(robot, {145, 0, 0, 0, 0, 7}, 1);  // and from the host it hears nothing more
   CHECK_FALSE(robot.standing());
-  CreateEngine other = create1();  // without a wait it must not hold up time
+  CreateEngine other = CreateEngine(create1());  // without a wait it must not hold up time
   say(other, {128, 131, 152, 1, 153, 153}, 1);
   CHECK(other.standing());
 }
 
 TEST(CreateScript, ShowsWhatIsStoredAndThenTheStreamIsQuiet) {
-  CreateEngine robot = create1();
+  CreateEngine robot = CreateEngine(create1());
   say(robot, {128, 152, 2, 155, 5, 148, 1, 35}, 0.1);
   hear(robot);
   say(robot, {154}, 0.2);
