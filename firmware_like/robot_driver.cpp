@@ -33,7 +33,7 @@ void RobotDriver::watch(const DriverView& view, double passed_s) {
   base_.update(wheels, v, (speeds_.right_mps - speeds_.left_mps) / wheel_base_m(), robot_in(view.objects));
   const double exposed_s = view.trail->exposure_s() - picked_.lag_s;
   const WheelOdometry since = view.trail->between(exposed_s, view.host_now_s + kAhead_s);
-  base_now_ = since.valid ? advanced(base_.base(), since.forward_m, since.turn_rad) : base_.base();
+  base_now_ = since.valid ? base_.after(since) : base_.base();
 }
 
 void RobotDriver::listen(FixedVector<OdometrySample, 64>& odometry) {
@@ -134,7 +134,7 @@ WheelSpeeds RobotDriver::start_motion_speeds(double now_s, const DriverView& vie
 
 WheelSpeeds RobotDriver::path_speeds(double passed_s) {
   if (open_) return dead_reckoned(passed_s);
-  return closed_->step(compose(inverse(T_floor_path_), base_now_), passed_s);
+  return closed_->step(compose(inverse(T_floor_path_), base_now_), passed_s, base_.extra_turn_rpm());
 }
 
 WheelSpeeds RobotDriver::client_speeds(double now_s) {

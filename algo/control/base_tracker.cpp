@@ -10,11 +10,11 @@ namespace {
 constexpr double kStartWeight = 0.25;  // its samples were neighbours, their errors alike
 constexpr double kWindow_m = 0.05, kWindow_rad = 0.25, kWindowSigma_m = 0.003;
 // Of a tracked pose, wider than its scatter, since errors of neighbouring frames go together.
-constexpr double kPlaceSigma_m = 0.003, kHeadingSigma_rad = 0.025;
+constexpr double kPlaceSigma_m = 0.003, kHeadingSigma_rad = 0.02;
 constexpr double kPlaceGate_m = 0.05, kHeadingGate_rad = 0.08;  // what may always be true
 constexpr double kGateSigmas = 4;
 // What the wheels get wrong: shares of the way and of the turn, and what comes of standing.
-constexpr double kWaySlip = 0.03, kTurnSlip = 0.04, kTurnPerWay_rpm = 0.05;
+constexpr double kWaySlip = 0.03, kTurnSlip = 0.04, kTurnPerWay_rpm = 0.3;
 constexpr double kRest_m = 0.0004, kRest_rad = 0.0006;
 constexpr double kExtraTurn_rpm = 0.15, kExtraTurnDrift_rpm = 0.002;  // at the start; of a frame
 constexpr int kMostRefused = 15;  // half a second of places that agree with each other and with the wheels

@@ -18,7 +18,13 @@ class BaseTracker {
   void update(const WheelOdometry& wheels, double told_v_mps, double told_w_rps, const SeenObject* object);
 
   const Pose2& base() const { return base_; }  // floor frame, when the newest frame was taken
-  bool seen() const { return seen_; }          // in the newest frame, where the wheels let it be
+  // How far the base turns per metre beyond what its wheels tell.
+  double extra_turn_rpm() const { return extra_turn_rpm_; }
+  // The base after its wheels have told of so much more.
+  Pose2 after(const WheelOdometry& wheels) const {
+    return advanced(base_, wheels.forward_m, wheels.turn_rad + extra_turn_rpm_ * wheels.forward_m);
+  }
+  bool seen() const { return seen_; }  // in the newest frame, where the wheels let it be
 
  private:
   static constexpr int kStates = 4;  // x, y, yaw; extra turn per metre

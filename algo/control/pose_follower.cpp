@@ -23,7 +23,7 @@ bool PoseFollower::done() const {
   return late_s >= 0 && (arrived_ || late_s > kLongestArrival_s);
 }
 
-WheelSpeeds PoseFollower::step(const Pose2& base, double passed_s) {
+WheelSpeeds PoseFollower::step(const Pose2& base, double passed_s, double extra_turn_rpm) {
   time_s_ += passed_s;
   const PathSample to = target();
   const SinCos h = sin_cos(base.yaw);
@@ -35,7 +35,7 @@ WheelSpeeds PoseFollower::step(const Pose2& base, double passed_s) {
   const double gain = rate > kLeastRate_1ps ? rate : kLeastRate_1ps;
   const double v = to.v_mps * sin_cos(turn).cos + limited(gain * along, kMostBack_mps);
   const double w = to.w_rps + limited(kAcross_1pm2 * to.v_mps * across + gain * turn, kMostBack_rps);
-  WheelSpeeds speeds = wheel_speeds(v, w, wheel_base_m_);
+  WheelSpeeds speeds = wheel_speeds(v, w - extra_turn_rpm * v, wheel_base_m_);
   // Both wheels give way alike, so that the curve stays the same.
   const double left = std::fabs(speeds.left_mps), right = std::fabs(speeds.right_mps);
   const double fastest = left > right ? left : right;

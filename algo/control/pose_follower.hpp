@@ -15,8 +15,9 @@ class PoseFollower {
   PoseFollower(const Path& path, double wheel_base_m) : path_(&path), wheel_base_m_(wheel_base_m) {}
 
   // `base` in the path's frame, at the moment at which the speeds will be obeyed; `passed_s` since the call
-  // before, during which the path's time went on.
-  WheelSpeeds step(const Pose2& base, double passed_s);
+  // before, during which the path's time went on; `extra_turn_rpm`: how far the robot turns per metre beyond
+  // what its wheels are told.
+  WheelSpeeds step(const Pose2& base, double passed_s, double extra_turn_rpm);
 
   bool done() const;  // the path's time is over, and the robot is where it ends or has had its chance
   PathSample target() const { return sample(*path_, time_s_); }

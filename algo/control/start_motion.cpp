@@ -33,12 +33,12 @@ struct Spread {
 
 Path start_motion() {
   Path path;
-  path.limits = {0.1, 0.3, 0.5, 2.0};
+  path.limits = {0.1, 0.3, 0.5, 1.0};
   for (const double way_m : {kStartWay_m, -kStartWay_m}) {
     path.add_line(way_m);
     path.add_wait(kPause_s);
   }
-  for (const double turn_rad : {kStartTurn_rad, -kStartTurn_rad}) {
+  for (const double turn_rad : {kStartTurn_rad, -2 * kStartTurn_rad, kStartTurn_rad}) {
     path.add_turn(turn_rad);
     path.add_wait(kPause_s);
   }

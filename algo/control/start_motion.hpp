@@ -17,7 +17,8 @@ inline constexpr double kStartWay_m = 0.045, kStartTurn_rad = 0.16;
 // Never further than that from its start, whatever the frames and the wheels do.
 inline constexpr double kStartAllowance_m = 0.05, kStartAllowance_rad = 10 * kPi / 180;
 
-// Forward and back, left and back: it ends where it began. Planned.
+// Forward and back, left, right and back: it ends where it began. Planned. Turned twice as far to one side, a
+// pose that is a millimetre wrong puts the turning centre half as far away.
 Path start_motion();
 
 // The speeds, slowed down so that the robot, which by its wheels has gone so far from where the start motion
@@ -46,7 +47,7 @@ struct Obedience {
 // Remembers what everything did while the robot moved. Fixed memory.
 class StartWitness {
  public:
-  static constexpr std::size_t kFrames = 360;  // 12 s
+  static constexpr std::size_t kFrames = 480;  // 16 s
 
   void clear() { count_ = 0; }
   // A frame: the wheels since the one before, and all objects.
