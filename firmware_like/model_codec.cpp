@@ -182,8 +182,7 @@ OwnedModel describe_volume(const Volume& volume, const ModelTraits& traits) {
   model.traits = traits;
   std::vector<SurfacePoint> points(kFitPoints);
   std::vector<Vec3f> scratch(kFitPoints);
-  points.resize(sample_surface(volume, points, scratch));
-  model.traits.bounds = surface_bounds(points);
+  model.traits.bounds = sample_surface(volume, points, scratch).bounds;
   model.traits.color = color_stats(volume);
   model.bricks.resize(count_packed(volume));
   model.volume = pack(volume, model.bricks);

@@ -1,7 +1,7 @@
 #include "firmware_like/model_keeper.hpp"
 
-#include "firmware_like/heap_memory.hpp"
 #include "firmware_like/model_meshes.hpp"
+#include "firmware_like/stored_twin.hpp"
 
 namespace st {
 namespace {
@@ -54,13 +54,17 @@ class Keeper {
       if (more >= kLeastNewSides) update(*track, known, more);
       return;
     }
+    if (count.named_model >= 0) {  // its heading has stayed open, so its own model cannot be merged
+      name(object, library_.entry(static_cast<std::size_t>(count.named_model)));
+      return;
+    }
     if (!options_.may_store || track == nullptr || !is_worth_it(count, *track)) return;
     const ModelTraits traits = traits_of(*track);
-    const Recognised same = find_double(library_.models(), track->volume);
+    const StoredTwin same = find_twin(library_.models(), track->volume);
     if (same.model >= 0) {  // known after all, from its sides that came into sight later
       const auto known = static_cast<std::size_t>(same.model);
       name(object, library_.entry(known));
-      if (is_sure_heading(same)) object.T_model_object = same.fit.T_model_seen;
+      if (same.has_heading) object.T_model_object = same.T_model_volume;
       said_.push_back("object " + std::to_string(object.id) + " is the stored " + library_.entry(known).name);
       return;
     }
@@ -128,22 +132,6 @@ std::vector<std::string> keep_models(const ObjectTracker& tracker, const ModelLi
     keeper.keep(count, track_of(tracker, count.id), objects[i++]);
   }
   return keeper.take_said();
-}
-
-Recognised find_double(std::span<const KnownModel> models, const Volume& volume) {
-  if (models.empty()) return {};
-  Recognition recognition;
-  const HeapMemory memory([&](Bump& bump) { recognition.bind(bump, volume.side); });
-  RecognitionSubject subject;
-  subject.volume = &volume;
-  subject.towards = {1, 0, 0};
-  constexpr bool kNone[kMaxKnownModels]{};
-  recognition.start(models, kNone, subject, RecognitionWay::kMatchesAndHeadings);
-  while (!recognition.advance(Recognition::kUnitsPerFrame)) {
-  }
-  Recognised best = recognition.best();
-  best.second_score = 0;  // whichever it is, it is stored already
-  return is_sure_model(best) ? best : Recognised{};
 }
 
 }  // namespace st

@@ -34,8 +34,4 @@ std::vector<std::string> keep_models(const ObjectTracker& tracker, const ModelLi
                                      ModelStore& store, const KeepOptions& options,
                                      std::vector<ObjectEnd>& objects);
 
-// The stored model that a whole volume is, compared at leisure; model -1: none. Where two stored ones are as
-// like, it is one of them.
-Recognised find_double(std::span<const KnownModel> models, const Volume& volume);
-
 }  // namespace st

@@ -15,8 +15,8 @@ constexpr int kStillCandidate = 90;    // good poses without motion: not a mover
 
 }  // namespace
 
-void ObjectTracker::log(EventKind kind, int object, double a, double b) {
-  events_.push_back({frame_.input->t_s, kind, object, a, b, 0});
+void ObjectTracker::log(EventKind kind, int object, double a, double b, double c) {
+  events_.push_back({frame_.input->t_s, kind, object, a, b, c});
 }
 
 void ObjectTracker::confirm(Track& track) {

@@ -9,7 +9,8 @@ namespace st {
 namespace {
 
 // Good poses after which a track is looked up: at once, and again when more of it has been seen.
-constexpr int kLookUps[] = {4, 45, 150};
+constexpr int kLookUps[] = {4, 30, 75, 150};
+constexpr int kColorMargin_px = 14;
 constexpr int kUnitsWhenLate = Recognition::kUnitsPerFrame / 4;  // on every step of the ladder but the first
 
 }  // namespace
@@ -31,8 +32,8 @@ void ObjectTracker::start_recognition() {
     ++track.look_ups;
     bool taken[kMaxKnownModels]{};
     for (const Track& other : tracks_)
-      if (other.phase != Track::Phase::kFree && other.known_model >= 0)
-        taken[static_cast<std::size_t>(other.known_model)] = true;
+      if (&other != &track && other.phase != Track::Phase::kFree && other.named_model >= 0)
+        taken[static_cast<std::size_t>(other.named_model)] = true;
     RecognitionSubject subject;
     subject.volume = &track.volume;
     const Vec3 camera = track.T_camera_object.inverse().t - track.bounds.centre();
@@ -48,35 +49,90 @@ void ObjectTracker::start_recognition() {
 // After the search, which needs the same time and is more urgent.
 void ObjectTracker::recognition_step(const LadderStep& step) {
   if (!knows_models() || search_.running || config_.tracker == TrackerKind::kFrameToFrame) return;
-  if (!recognition_.running()) start_recognition();
-  if (!recognition_.running()) return;
+  if (!recognition_.running() && !proof_.running) start_recognition();
+  if (!recognition_.running() && !proof_.running) return;
   Track& track = tracks_[recognised_track_];
   if (track.id != recognised_id_ || track.phase != Track::Phase::kTracked) {
     recognition_.stop();
+    proof_ = {};
     return;
   }
-  // The answer is checked against a frame in which the track itself is good.
-  const bool at_hand = track.state == TrackState::kGood;
-  if (!at_hand || !recognition_.advance(step.level == 0 ? Recognition::kUnitsPerFrame : kUnitsWhenLate))
-    return;
-  const Recognised& answer = recognition_.best();
-  // Where the last look-up finds all headings alike, it is the thing's own nature: round and plain.
-  const bool last = track.look_ups == static_cast<int>(std::size(kLookUps));
-  const bool heading = is_sure_heading(answer) || (last && has_no_heading(answer));
-  if (is_sure_model(answer) && heading && adopt_model(track, answer))
-    log(EventKind::kRecognised, track.id, static_cast<double>(answer.fit.score()), answer.agreeing);
-  else
-    log(EventKind::kUnknownObject, track.id, static_cast<double>(answer.fit.score()), answer.agreeing);
+  // The answer is checked against frames in which the track itself is good.
+  if (track.state != TrackState::kGood) return;
+  if (proof_.running) {
+    prove(track, recognition_.best());
+  } else if (recognition_.advance(step.level == 0 ? Recognition::kUnitsPerFrame : kUnitsWhenLate)) {
+    const Recognised& answer = recognition_.best();
+    if (const Doubt doubt = doubt_of_model(answer); doubt != Doubt::kNone)
+      settle(track, answer, doubt);
+    else
+      proof_ = {true, 0, answer.fit.T_model_seen.inverse(), {}, false};
+  }
 }
 
-// The model, where the answer puts it, must agree with what this frame shows: also with what it does not
-// show. Then it takes the track over; else everything stays as it was.
-bool ObjectTracker::adopt_model(Track& track, const Recognised& answer) {
-  constexpr float kLeastExplained = 0.75f, kMostLookedThrough = 0.15f;
+// One look in each frame, since the model has to be rendered for each: it must agree with what the frame
+// shows, on the whole and everywhere; and turned to any other heading that fits, it must not.
+void ObjectTracker::prove(Track& track, const Recognised& answer) {
   std::swap(track.volume, recognition_.volume());
-  const Pose T_camera_model = track.T_camera_object * answer.fit.T_model_seen.inverse();
+  Pose T_camera_model = track.T_camera_object * proof_.T_object_model;
+  Doubt doubt = Doubt::kNone;
+  const int look = proof_.looks++;
+  if (look == 0) {
+    doubt = fit_to_frame(track, T_camera_model);
+    proof_.T_object_model = track.T_camera_object.inverse() * T_camera_model;
+  } else if (look == 1) {
+    proof_.here = patches_at(track, T_camera_model);
+    if (!proof_.here.agrees()) doubt = Doubt::kFrame;
+  } else if (const VolumeFit& other = answer.other_headings[look - 2]; other.score() > 0) {
+    const PatchCheck turned = patches_at(track, track.T_camera_object * other.T_model_seen.inverse());
+    proof_.heading_open = proof_.heading_open || !proof_.here.refutes(turned);
+  }
+  const bool last = proof_.looks == 2 + Recognised::kOtherHeadings;
+  if (last && proof_.heading_open) doubt = Doubt::kHeading;
+  if (last && doubt == Doubt::kNone) {
+    adopt_model(track, answer.model, T_camera_model);
+  } else {
+    std::swap(track.volume, recognition_.volume());
+    render_one(track, track.T_camera_object);
+  }
+  if (last || doubt != Doubt::kNone) settle(track, answer, doubt);
+}
+
+// What the answer comes to.
+void ObjectTracker::settle(Track& track, const Recognised& answer, Doubt doubt) {
+  proof_ = {};
+  const bool recognised = doubt == Doubt::kNone || doubt == Doubt::kHeading;
+  if (recognised && track.named_model == answer.model && doubt == Doubt::kHeading) return;  // said already
+  if (recognised) {
+    track.named_model = answer.model;
+    if (ObjectCount* count = count_of(track.id)) count->named_model = answer.model;
+  }
+  log(recognised ? EventKind::kRecognised : EventKind::kUnknownObject, track.id,
+      static_cast<double>(answer.fit.score()), answer.agreeing, static_cast<double>(doubt));
+}
+
+// The model, which stands in the track's volume, rendered at the pose and held against the frame.
+PatchCheck ObjectTracker::patches_at(Track& track, const Pose& T_camera_model) {
+  const auto k = static_cast<std::size_t>(&track - tracks_);
   render_one(track, T_camera_model);
-  AlignInput in = alignment_of(track, recognised_track_);
+  PatchInput in;
+  in.view = &track.view;
+  in.camera = frame_.camera;
+  in.depth_z = frame_.depth_z;
+  in.owners = frame_.owners;
+  in.owner = static_cast<std::uint8_t>(k + 1);
+  in.color = register_colors(
+      k, track.view.maps.roi.grown(kColorMargin_px).clipped(frame_.depth_z.width, frame_.depth_z.height));
+  in.skirt_z_m = appearance_of(library_->models()[static_cast<std::size_t>(recognition_.best().model)].traits)
+                     .least_top_m;
+  return check_patches(in);
+}
+
+// Moves the pose of the model, which stands in the track's volume, onto the frame.
+Doubt ObjectTracker::fit_to_frame(Track& track, Pose& T_camera_model) {
+  constexpr float kLeastExplained = 0.75f, kMostLookedThrough = 0.15f;
+  render_one(track, T_camera_model);
+  AlignInput in = alignment_of(track, static_cast<std::size_t>(&track - tracks_));
   in.start = T_camera_model;
   in.pivot = T_camera_model.t;
   in.prior = {T_camera_model, {}};
@@ -85,22 +141,24 @@ bool ObjectTracker::adopt_model(Track& track, const Recognised& answer) {
   const AlignResult aligned = align(in, scratch_);
   const Pose D = aligned.T_camera_object * T_camera_model.inverse();
   const Agreement agreement = compare(track.view, frame_.camera, frame_.depth_z, D, aligned.depth);
-  const bool agrees = judge(aligned, agreement) == Verdict::kGood && agreement.explained >= kLeastExplained &&
-                      agreement.through <= kMostLookedThrough * (agreement.same + agreement.through);
-  if (!agrees) {
-    std::swap(track.volume, recognition_.volume());
-    render_one(track, track.T_camera_object);
-    return false;
-  }
-  const KnownModel& model = library_->models()[static_cast<std::size_t>(answer.model)];
-  track.T_model_object = aligned.T_camera_object.inverse() * track.T_camera_object;
+  if (judge(aligned, agreement) != Verdict::kGood || agreement.explained < kLeastExplained ||
+      agreement.through > kMostLookedThrough * (agreement.same + agreement.through))
+    return Doubt::kFrame;
+  T_camera_model = aligned.T_camera_object;
+  return Doubt::kNone;
+}
+
+// The stored model, which stands in the track's volume, takes the track over.
+void ObjectTracker::adopt_model(Track& track, int known_model, const Pose& T_camera_model) {
+  const KnownModel& model = library_->models()[static_cast<std::size_t>(known_model)];
+  track.T_model_object = T_camera_model.inverse() * track.T_camera_object;
   const Pose T_object_model = track.T_model_object.inverse();
   Bounds bounds;  // what the track has seen, and the model
   for (int i = 0; i < 8; ++i)
-    bounds.include(track.T_model_object * Vec3{(i & 1) != 0 ? track.bounds.low.x : track.bounds.high.x,
-                                               (i & 2) != 0 ? track.bounds.low.y : track.bounds.high.y,
-                                               (i & 4) != 0 ? track.bounds.low.z : track.bounds.high.z});
-  track.known_model = answer.model;
+    bounds.include(track.T_model_object * Vec3{(i & 1) != 0 ? track.bounds.high.x : track.bounds.low.x,
+                                               (i & 2) != 0 ? track.bounds.high.y : track.bounds.low.y,
+                                               (i & 4) != 0 ? track.bounds.high.z : track.bounds.low.z});
+  track.known_model = known_model;
   track.motion.rebase(T_object_model);
   track.T_camera_object = track.T_camera_object * T_object_model;
   track.T_last_good = track.T_last_good * T_object_model;
@@ -113,10 +171,9 @@ bool ObjectTracker::adopt_model(Track& track, const Recognised& answer) {
   track.drive.reset();
   track.habit = Habit{};
   if (ObjectCount* count = count_of(track.id)) {
-    count->known_model = answer.model;
+    count->known_model = known_model;
     count->T_model_object = track.T_model_object;
   }
-  return true;
 }
 
 }  // namespace st

@@ -4,6 +4,7 @@
 
 #include "algo/control/start_motion.hpp"
 #include "algo/core/bump.hpp"
+#include "algo/recognition/patch_check.hpp"
 #include "algo/recognition/recognition.hpp"
 #include "algo/segmentation/segmenter.hpp"
 #include "algo/tracking/associate.hpp"
@@ -30,7 +31,8 @@ struct ObjectCount {
   std::uint64_t tracked = 0, lost = 0;
   std::uint64_t aligned = 0, iterations = 0;  // frames with an alignment, and what those took together
   bool good_at_end = false, left_view = false;
-  int known_model = -1;  // of the database
+  int named_model = -1;  // of the database: what it is
+  int known_model = -1;  // the same, where its heading is known, too, and that model tracks it
   Pose T_model_object{};
 };
 // Recognition tracker: frames with a segment, and at which stage those without a pose failed.
@@ -125,7 +127,11 @@ class ObjectTracker {
   bool wants_look_up(const Track& track) const;
   void start_recognition();
   void recognition_step(const LadderStep& step);
-  bool adopt_model(Track& track, const Recognised& answer);
+  void prove(Track& track, const Recognised& answer);
+  void settle(Track& track, const Recognised& answer, Doubt doubt);
+  PatchCheck patches_at(Track& track, const Pose& T_camera_model);
+  Doubt fit_to_frame(Track& track, Pose& T_camera_model);
+  void adopt_model(Track& track, int known_model, const Pose& T_camera_model);
 
   void confirm(Track& track);
   bool is_proven(const Track& candidate) const;
@@ -157,7 +163,7 @@ class ObjectTracker {
   bool begin_from_pixels(const Unexplained& what);
   void claim_pixels(const Unexplained& what, std::size_t k);
   void claim_near(const Unexplained& what, std::size_t k, const Vec3& centre, double radius_m);
-  void log(EventKind kind, int object, double a = 0, double b = 0);
+  void log(EventKind kind, int object, double a = 0, double b = 0, double c = 0);
   ObjectSample sample_of(Track& track) const;
   ObjectCount* count_of(int id);  // null: more objects than the list holds
   void freeze_background();
@@ -192,6 +198,13 @@ class ObjectTracker {
   Recognition recognition_;
   std::size_t recognised_track_ = 0;
   int recognised_id_ = 0;
+  struct Proof {  // of the newest answer, against the frames at hand
+    bool running = false;
+    int looks = 0;
+    Pose T_object_model;  // of the track that was looked up
+    PatchCheck here;      // at that pose
+    bool heading_open = false;
+  } proof_;
   static constexpr int kLeastMatches = 3;
   struct SeenFeatures {  // of the last frame that was matched
     std::span<Feature> features;

@@ -44,8 +44,9 @@ enum class EventKind : std::uint8_t {
   kVolumeFull,      // surface outside the object's volume was dropped
   kInterrupted,     // a: signal
   kVolumeLeft,      // scan mode, a: share of the surface in sight that lies outside of the volume
-  kRecognised,  // a model of the database took over; a: how well it fits, 0-1, b: agreeing 3-D SIFT matches
-  kUnknownObject,  // none of the models is it; a, b: of the best
+  kRecognised,  // it is a model of the database; a: how well it fits, 0-1, b: agreeing 3-D SIFT matches, c: 0
+                // when the model took over, else its heading is open
+  kUnknownObject,  // none of the models is it; a, b: of the best; c: why, as a Doubt
 };
 const char* name_of(EventKind kind);
 

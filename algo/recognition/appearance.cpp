@@ -37,6 +37,7 @@ void fill_column(const Volume& v, const Appearance& how, const Grid& grid, int x
     const float distance_m = coarse_distance_m(v, p);
     const bool at_surface = std::fabs(distance_m) < 0.75f * grid.voxel_m;
     if (print == 0 && distance_m > 0.5f * grid.voxel_m) continue;
+    if (print == 0 && p.z < how.least_top_m) return;
     float brightness = print;
     if (at_surface || print == 0) {
       const ColorSample color = sample_color(v, p);

@@ -13,6 +13,7 @@ inline constexpr int kAppearanceSide = 64;
 
 struct Appearance {
   float floor_z_m = 0;         // object frame: where the solid ends below
+  float least_top_m = 0;       // a topmost surface below is floor that hangs on to it
   float mean_luminance = 128;  // of the whole surface, 0-255: what is as bright becomes 0.5 in any light
 };
 

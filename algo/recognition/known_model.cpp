@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "algo/recognition/volume_fit.hpp"
 #include "algo/tracking/recover.hpp"
 
 namespace st {
@@ -50,7 +51,8 @@ ColorStats color_stats(const Volume& v) {
 }
 
 Appearance appearance_of(const ModelTraits& traits) {
-  return {static_cast<float>(traits.bounds.low.z), traits.color.luminance};
+  const auto low = static_cast<float>(traits.bounds.low.z), high = static_cast<float>(traits.bounds.high.z);
+  return {low, low + skirt_m(high - low), traits.color.luminance};
 }
 
 bool may_be(const ModelTraits& model, const ModelTraits& seen, bool cut) {

@@ -1,14 +1,18 @@
 #include "algo/recognition/recognition.hpp"
 
+#include <cmath>
+
 #include "algo/core/scalar_math.hpp"
 
 namespace st {
 namespace {
 
 constexpr int kSlabs = 8;  // of the appearance that one slice fills
-constexpr int kTryIterations = 8, kRefineIterations = 20;
-constexpr int kRows = 8;                 // of a match that one slice does
-constexpr float kMatchTolerance = 2.5f;  // voxels of the appearance
+constexpr int kTryIterations = 8, kTryStride = 4, kRefineIterations = 12;
+constexpr double kTryTurn_rad = 0.052, kRefineTurn_rad = 0.02;  // between turns by which the print is tried
+constexpr int kTryTurns = 2, kRefineTurns = 4;                  // to either side
+constexpr int kRows = 16;                                       // of a match that one slice does
+constexpr float kMatchTolerance = 2.5f;                         // voxels of the appearance
 
 bool same_heading(const VolumeFit& a, const VolumeFit& b) {
   return rotation_angle(a.T_model_seen.R * b.T_model_seen.R.transposed()) < kSameHeading_rad;
@@ -84,10 +88,11 @@ int Recognition::step() {
 
 // Samples the volume's surface, and places the appearance about it.
 void Recognition::look_at(const Volume& volume) {
-  seen_ = seen_memory_.first(sample_surface(volume, seen_memory_, scratch_));
+  const SampledSurface sampled = sample_surface(volume, seen_memory_, scratch_);
+  seen_ = seen_memory_.first(sampled.points);
   traits_ = {};
   traits_.color = color_stats(volume);
-  traits_.bounds = surface_bounds(seen_);
+  traits_.bounds = sampled.bounds;
   place_appearance(sift_.input(), traits_.bounds);
 }
 
@@ -147,7 +152,7 @@ int Recognition::match_next() {
     ++next_;
     break;
   }
-  return 4;
+  return 2;
 }
 
 // Those on which more matches agree come first; of the others those of the most similar size.
@@ -184,7 +189,7 @@ int Recognition::unpack_next() {
     ++next_;
     return 5;
   }
-  model_points_ = model_memory_.first(sample_surface(volume_, model_memory_, scratch_));
+  model_points_ = model_memory_.first(sample_surface(volume_, model_memory_, scratch_).points);
   for (VolumeFit& kept : kept_) kept = {};
   heading_ = 0;
   stage_ = Stage::kHeadings;
@@ -212,22 +217,28 @@ int Recognition::try_heading() {
   const bool has_start = heading_ == 0 ? candidate.fit.found
                                        : start_from_silhouette(model_points_, seen_, subject_.towards,
                                                                2 * kPi * (heading_ - 1) / kHeadings, start);
-  if (has_start) note(fit_to_volume(volume_, seen_, start, kTryIterations));
+  if (has_start) {
+    const VolumeFit fit = fit_to_volume(volume_, seen(), start, kTryIterations, kTryStride);
+    note(turn_to_print(volume_, seen(), fit, kTryTurns, kTryTurn_rad, kTryStride));
+  }
   if (++heading_ == tries) {
     heading_ = 0;
     stage_ = Stage::kRefine;
   }
-  return 4;
+  return 2;
 }
 
 int Recognition::refine() {
   VolumeFit& kept = kept_[heading_];
-  if (kept.score() > 0) kept = fit_to_volume(volume_, seen_, kept.T_model_seen, kRefineIterations);
-  if (++heading_ < kKept) return 8;
+  if (kept.score() > 0) {
+    kept = fit_to_volume(volume_, seen(), kept.T_model_seen, kRefineIterations);
+    kept = turn_to_print(volume_, seen(), kept, kRefineTurns, kRefineTurn_rad);
+  }
+  if (++heading_ < kKept) return 11;
   conclude();
   ++next_;
   stage_ = Stage::kUnpack;
-  return 8;
+  return 11;
 }
 
 namespace {
@@ -256,31 +267,21 @@ void Recognition::conclude() {
     return;
   }
   const float second = twins ? best_.second_score : best_.fit.score();
-  best_ = {candidate.model, *best, candidate.fit.T_b_a, candidate.matches, candidate.fit.inliers, second, 0};
+  best_ = {candidate.model, *best, candidate.fit.T_b_a, candidate.matches, candidate.fit.inliers, second, {}};
+  int others = 0;
   for (const VolumeFit& fit : kept_)
-    if (!same_heading(fit, *best) && fit.score() > best_.other_heading) best_.other_heading = fit.score();
+    if (&fit != best && fit.score() > 0 && !same_heading(fit, *best)) best_.other_headings[others++] = fit;
 }
 
-bool is_sure_model(const Recognised& r) {
+Doubt doubt_of_model(const Recognised& r) {
   constexpr float kLikeness = 0.35f, kAhead = 0.02f;
-  if (r.model < 0 || r.fit.explained < kExplained) return false;
-  if (r.fit.colored >= kColoured && r.fit.likeness < kLikeness) return false;
-  return r.fit.score() > r.second_score + kAhead;
-}
-
-bool is_sure_heading(const Recognised& r) {
-  // A print that hardly resembles the model's, of a mesh from elsewhere say, has to be far ahead.
-  constexpr float kAhead = 0.03f, kFarAhead = 0.06f, kAlike = 0.55f;
-  constexpr int kAgreeing = 5;
-  const float ahead = r.fit.score() - r.other_heading;
-  if (ahead > kFarAhead || (ahead > kAhead && r.fit.likeness > kAlike)) return true;
-  const Mat3 off = r.fit.T_model_seen.R * r.T_model_seen_matched.R.transposed();
-  return r.agreeing >= kAgreeing && rotation_angle(off) < kSameHeading_rad;
-}
-
-bool has_no_heading(const Recognised& r) {
-  constexpr float kEqual = 0.01f;
-  return r.fit.score() - r.other_heading < kEqual;
+  // Both stand on the floor: of another size, the surfaces meet only where one of them is lifted.
+  constexpr double kMostLift_m = 0.007;
+  if (r.model < 0) return Doubt::kNoCandidate;
+  if (std::fabs(r.fit.T_model_seen.t.z) > kMostLift_m) return Doubt::kShape;
+  if (r.fit.explained < kExplained) return Doubt::kShape;
+  if (r.fit.colored >= kColoured && r.fit.likeness < kLikeness) return Doubt::kPrint;
+  return r.fit.score() > r.second_score + kAhead ? Doubt::kNone : Doubt::kRival;
 }
 
 }  // namespace st

@@ -30,13 +30,14 @@ struct Recognised {
   Pose T_model_seen_matched;      // as the matches alone have it; where `agreeing` is not 0
   int matches = 0, agreeing = 0;  // 3-D SIFT
   float second_score = 0;         // of the best other model that is not the same thing, stored twice
-  float other_heading = 0;        // of this model turned by more than kSameHeading_rad
+  static constexpr int kOtherHeadings = 2;
+  VolumeFit other_headings[kOtherHeadings];  // the best of this model turned by more than kSameHeading_rad
 };
 
 class Recognition {
  public:
   // One unit is about 0.1 ms on a slow PC.
-  static constexpr int kUnitsPerFrame = 40;
+  static constexpr int kUnitsPerFrame = 50;
 
   void bind(Bump& memory, int volume_side);
 
@@ -65,7 +66,7 @@ class Recognition {
     int model = 0, matches = 0;
     UprightFit fit;
   };
-  static constexpr int kMostVerified = 4, kHeadings = 24, kKept = 3;
+  static constexpr int kMostVerified = 4, kHeadings = 24, kKept = 1 + Recognised::kOtherHeadings;
 
   int step();  // one slice; its cost in units
   int sample_subject();
@@ -78,6 +79,7 @@ class Recognition {
   int refine();
   void conclude();
   void note(const VolumeFit& fit);
+  SeenSurface seen() const { return {seen_, fit_tolerance_m(subject_.volume->truncation_m)}; }
   const KnownModel& known(const Candidate& c) const { return models_[static_cast<std::size_t>(c.model)]; }
   Candidate& verified() { return candidates_[static_cast<std::size_t>(next_)]; }
 
@@ -103,10 +105,18 @@ class Recognition {
   Recognised best_;
 };
 
-// How sure an answer must be before it counts: a wrong one would spoil both models. Which model it is may be
-// sure when its heading is not: a thing that is round and plain has none.
-bool is_sure_model(const Recognised& r);
-bool is_sure_heading(const Recognised& r);
-bool has_no_heading(const Recognised& r);
+// How sure an answer must be before it counts: a wrong one would spoil both models. The last two are found by
+// check_patches().
+enum class Doubt : std::uint8_t {
+  kNone,
+  kNoCandidate,  // none of the models has this size and hue, or none fits at all
+  kShape,        // too much of what was seen lies off the best model's surface
+  kPrint,        // it is printed otherwise
+  kRival,        // another model fits as well
+  kFrame,        // what is seen contradicts the model in places
+  kHeading,      // it is this model, but which way round is open: turned it is not contradicted, either
+};
+Doubt doubt_of_model(const Recognised& r);  // kNone to kRival
+inline bool is_sure_model(const Recognised& r) { return doubt_of_model(r) == Doubt::kNone; }
 
 }  // namespace st

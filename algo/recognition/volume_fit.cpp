@@ -10,18 +10,28 @@ namespace {
 constexpr double kResidualScale_m = 0.006, kHeightSigma_m = 0.004;
 constexpr int kLeastColoured = 60;
 
-float luminance_of(const ColorSample& c) { return 0.299f * c.r + 0.587f * c.g + 0.114f * c.b; }
+// Every `stride`th of some points.
+struct Subset {
+  std::span<const SurfacePoint> points;
+  std::size_t stride = 1;
+  float tolerance_m = kFitTolerance_m;
+
+  Vec3f middle() const {
+    Vec3f sum{};
+    for (std::size_t i = 0; i < points.size(); i += stride) sum += points[i].p;
+    return sum * (1.0f / static_cast<float>(count()));
+  }
+  std::size_t count() const { return (points.size() + stride - 1) / stride; }
+};
 
 // One step in x, y, z and the turn about the points' middle.
-bool improve(const Volume& model, std::span<const SurfacePoint> seen, const Vec3& start_t, Pose& T) {
+bool improve(const Volume& model, const Subset& seen, const Vec3& start_t, Pose& T) {
   double A[16]{}, b[4]{};
   const PoseF Tf = to_float(T);
-  Vec3f middle{};
-  for (const SurfacePoint& s : seen) middle += s.p * (1.0f / static_cast<float>(seen.size()));
-  const Vec3f pivot = Tf * middle;
+  const Vec3f pivot = Tf * seen.middle();
   int used = 0;
-  for (const SurfacePoint& s : seen) {
-    const Vec3f q = Tf * s.p;
+  for (std::size_t k = 0; k < seen.points.size(); k += seen.stride) {
+    const Vec3f q = Tf * seen.points[k].p;
     const SdfSample at = sample(model, q);
     if (!at.valid) continue;
     ++used;
@@ -48,12 +58,21 @@ bool improve(const Volume& model, std::span<const SurfacePoint> seen, const Vec3
   return true;
 }
 
+// Correlation over all channels together, each about the mean of all: hue counts as well as print, and a
+// brighter light changes nothing. What differs by no more than noise and shading is alike.
 struct Correlation {
   double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
   void add(double x, double y) { ++n, a += x, b += y, aa += x * x, bb += y * y, ab += x * y; }
+  void add(const ColorSample& x, const ColorSample& y) {
+    add(static_cast<double>(x.r), static_cast<double>(y.r));
+    add(static_cast<double>(x.g), static_cast<double>(y.g));
+    add(static_cast<double>(x.b), static_cast<double>(y.b));
+  }
   double value() const {
-    const double va = aa - a * a / n, vb = bb - b * b / n;
-    return va > 1e-9 && vb > 1e-9 ? (ab - a * b / n) / std::sqrt(va * vb) : 0;
+    constexpr double kNoise = 10.0 * 10.0;  // grey levels, squared
+    if (n < 1) return 0;
+    const double va = aa / n - a / n * (a / n), vb = bb / n - b / n * (b / n), cov = ab / n - a / n * (b / n);
+    return (cov + kNoise) / std::sqrt((va + kNoise) * (vb + kNoise));
   }
 };
 
@@ -92,13 +111,27 @@ Range trimmed_range(std::span<const SurfacePoint> points, const Vec3f& along) {
 
 }  // namespace
 
-std::size_t sample_surface(const Volume& volume, std::span<SurfacePoint> out, std::span<Vec3f> scratch) {
+float skirt_m(float height_m) {
+  constexpr float kMost_m = 0.04f, kMostShare = 0.35f;
+  return height_m * kMostShare < kMost_m ? height_m * kMostShare : kMost_m;
+}
+
+SampledSurface sample_surface(const Volume& volume, std::span<SurfacePoint> out, std::span<Vec3f> scratch) {
   const std::size_t n = surface_points(volume, scratch.first(out.size()));
+  if (n == 0) return {};
+  for (std::size_t i = 0; i < n; ++i) out[i].p = scratch[i];
+  const Range up = trimmed_range(out.first(n), {0, 0, 1});
+  const float least_z = up.low + skirt_m(up.high - up.low);
+  SampledSurface sampled;
   for (std::size_t i = 0; i < n; ++i) {
-    const ColorSample color = sample_color(volume, scratch[i]);
-    out[i] = {scratch[i], color.valid ? luminance_of(color) : -1.0f};
+    if (scratch[i].z < least_z) continue;
+    out[sampled.points++] = {scratch[i], sample_color(volume, scratch[i])};
   }
-  return n;
+  const std::span<const SurfacePoint> kept = out.first(sampled.points);
+  const Range along = trimmed_range(kept, {1, 0, 0}), across = trimmed_range(kept, {0, 1, 0});
+  sampled.bounds.low = to_double(Vec3f{along.low, across.low, up.low});
+  sampled.bounds.high = to_double(Vec3f{along.high, across.high, up.high});
+  return sampled;
 }
 
 float VolumeFit::score() const {
@@ -106,47 +139,62 @@ float VolumeFit::score() const {
   return explained * (0.7f + 0.3f * print);
 }
 
-VolumeFit fit_to_volume(const Volume& model, std::span<const SurfacePoint> seen, const Pose& start,
-                        int iterations) {
+namespace {
+
+VolumeFit measure(const Volume& model, const Subset& seen, const Pose& T_model_seen) {
+  const float tolerance_m = seen.tolerance_m;
+  VolumeFit fit;
+  fit.T_model_seen = T_model_seen;
+  const PoseF T = to_float(T_model_seen);
+  Correlation print;
+  int on_surface = 0;
+  for (std::size_t i = 0; i < seen.points.size(); i += seen.stride) {
+    const SurfacePoint& s = seen.points[i];
+    const Vec3f q = T * s.p;
+    const SdfSample at = sample(model, q);
+    if (!at.valid || std::fabs(at.sdf_m) > tolerance_m) continue;
+    ++on_surface;
+    if (!s.color.valid) continue;
+    const ColorSample color = sample_color(model, q);
+    if (!color.valid) continue;
+    print.add(color, s.color);
+    ++fit.colored;
+  }
+  if (on_surface == 0) return fit;
+  fit.explained = static_cast<float>(on_surface) / static_cast<float>(seen.count());
+  fit.colored *= static_cast<int>(seen.stride);
+  fit.likeness = fit.colored > 2 ? static_cast<float>(print.value()) : 0.0f;
+  return fit;
+}
+
+}  // namespace
+
+VolumeFit fit_to_volume(const Volume& model, const SeenSurface& seen, const Pose& start, int iterations,
+                        int stride) {
+  const Subset subset{seen.points, static_cast<std::size_t>(stride), seen.tolerance_m};
   VolumeFit fit;
   fit.T_model_seen = start;
   for (int i = 0; i < iterations; ++i)
-    if (!improve(model, seen, start.t, fit.T_model_seen)) return fit;
-  fit.T_model_seen.R = orthonormalized(fit.T_model_seen.R);
-  const PoseF T = to_float(fit.T_model_seen);
-  Correlation print;
-  int on_surface = 0;
-  for (const SurfacePoint& s : seen) {
-    const Vec3f q = T * s.p;
-    const SdfSample at = sample(model, q);
-    if (!at.valid || std::fabs(at.sdf_m) > kFitTolerance_m) continue;
-    ++on_surface;
-    const ColorSample color = sample_color(model, q);
-    if (color.valid && s.luminance >= 0)
-      print.add(static_cast<double>(luminance_of(color)), static_cast<double>(s.luminance));
+    if (!improve(model, subset, start.t, fit.T_model_seen)) return fit;
+  return measure(model, subset, {orthonormalized(fit.T_model_seen.R), fit.T_model_seen.t});
+}
+
+VolumeFit turn_to_print(const Volume& model, const SeenSurface& seen, const VolumeFit& fit, int steps,
+                        double step_rad, int stride) {
+  const Subset subset{seen.points, static_cast<std::size_t>(stride), seen.tolerance_m};
+  VolumeFit best = fit;
+  const Vec3 pivot = fit.T_model_seen * to_double(subset.middle());
+  for (int i = -steps; i <= steps; ++i) {
+    const Pose turned = moved_about(fit.T_model_seen, {{}, {0, 0, i * step_rad}}, pivot);
+    const VolumeFit tried = measure(model, subset, turned);
+    if (tried.score() > best.score()) best = tried;
   }
-  if (on_surface == 0) return fit;
-  fit.explained = static_cast<float>(on_surface) / static_cast<float>(seen.size());
-  fit.colored = static_cast<int>(print.n);
-  fit.likeness = print.n > 2 ? static_cast<float>(print.value()) : 0.0f;
-  return fit;
+  return best;
 }
 
 Silhouette silhouette(std::span<const SurfacePoint> points, const Vec3f& towards) {
   const Range across = trimmed_range(points, {-towards.y, towards.x, 0});
   return {trimmed_range(points, towards).high, across.low, across.high};
-}
-
-Bounds surface_bounds(std::span<const SurfacePoint> points) {
-  Bounds bounds;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3f along{};
-    along[axis] = 1;
-    const Range range = trimmed_range(points, along);
-    bounds.low[axis] = static_cast<double>(range.low);
-    bounds.high[axis] = static_cast<double>(range.high);
-  }
-  return bounds;
 }
 
 bool start_from_silhouette(std::span<const SurfacePoint> model, std::span<const SurfacePoint> seen,

@@ -81,7 +81,7 @@ void start_track(Track& track, const Footprint& footprint, const Support& suppor
   track.heading_doubt = false;
   track.sides = SeenSides{};
   track.habit = Habit{};
-  track.known_model = -1;
+  track.named_model = track.known_model = -1;
   track.T_model_object = Pose{};
   track.look_ups = 0;
   track.planar = footprint.on_floor;

@@ -91,7 +91,8 @@ struct Track {
   double yaw_unwrapped = 0;  // as published, floor frame
 
   // Recognised: its pose and model are those of a stored model's frame, in which its own frame lies there.
-  int known_model = -1;  // of the database; -1: new
+  int named_model = -1;  // of the database: what it is, though perhaps not which way round; -1: new
+  int known_model = -1;  // of the database, its heading known; -1: none
   Pose T_model_object{};
   int look_ups = 0;      // how often it was compared with the database
   bool matched = false;  // recognition tracker: this frame's pose was found

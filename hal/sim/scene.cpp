@@ -33,11 +33,13 @@ constexpr const char* kNames[] = {"lab",
                                   "hand-moved-object",
                                   "chair-moved",
                                   "crowd",
+                                  "thing",
                                   "empty",
                                   "scan",
                                   "scan-fast",
                                   "scan-wall"};
 constexpr double kTurn = 2 * kPi;
+constexpr double kThingBend_m = 0.3;  // radius of the circle that a made-up thing is led along
 
 // What the robots of a scene do, before there is a room round them.
 struct RobotPlan {
@@ -104,12 +106,26 @@ Script script_of(const std::string& name) {
       {"leaves-and-returns", 23, Moves().straight(2.4, 0.3).wait(2).back(2.4, 0.3).done()},
       {"set-down-by-hand", 20, circle_commands(0.45, 0.2, 0.8)},
       {"chair-moved", 26, circle_commands(0.5, 0.2, 1.05)},
+      {"thing", 12, Moves().bend(kThingBend_m, kTurn * 1.1, 0.2).done()},
       {"empty", 34, {}},
       {"hand-moved-object", 18, {}},
   };
   for (const Script& s : scripts)
     if (name == s.name) return s;
   return {"lab", 20, circle_commands(0.5, 0.2, 1.05)};
+}
+
+// Round the circle of a made-up thing, so far out that all of the thing is in view, and up to 0.4 m
+// farther: cameras stand near and far.
+std::vector<Pose2> about_the_bend(double radius_m, Random& random) {
+  constexpr double kSeenAnyway_m = 0.19;
+  const double reach = kThingBend_m + std::max(0.0, radius_m - kSeenAnyway_m) + random.uniform(0, 0.4);
+  std::vector<Pose2> places;
+  for (int i = 0; i < 16; ++i) {
+    const SinCos sc = sin_cos(i * kTurn / 16);
+    places.push_back({reach * sc.cos, kThingBend_m + reach * sc.sin, 0});
+  }
+  return places;
 }
 
 // The second robot of two-robots: to and fro beside the first one's circle.
@@ -138,6 +154,7 @@ Plan plan_scene(const SceneOptions& options, Random& random) {
   const double across = (random.uniform() < 0.5 ? -1 : 1) * kPi / 2 + random.uniform(-0.25, 0.25);
   if (name == "arrives-late" || name == "occluded" || name == "leaves-and-returns") plan.azimuth_rad = across;
   if (name == "arrives-late") plan.must_see = line_of_places(2.0, 2.9);
+  if (name == "thing") plan.must_see = about_the_bend(radius_of(make_thing(options.thing)), random);
   if (name == "leaves-and-returns") plan.must_see = line_of_places(-0.2, 0.6);
   if (name == "empty" || name == "hand-moved-object") {
     plan.must_see = line_of_places(-0.5, 0.5);
@@ -164,6 +181,22 @@ Plan plan_scene(const SceneOptions& options, Random& random) {
     plan.robots.back().start_s = random.uniform(0.5, 3.0);
   }
   return plan;
+}
+
+RobotShape thing_shape(const ThingSpec& spec) {
+  RobotShape shape;
+  shape.mesh = make_thing(spec);
+  shape.radius_m = radius_of(shape.mesh);
+  return shape;
+}
+
+// Led along the way with one side or another in front.
+Motion turned_by(const Motion& motion, double angle_rad) {
+  return [motion, R = rotation_z(angle_rad)](double t, Pose& out) {
+    if (!motion(t, out)) return false;
+    out.R = out.R * R;
+    return true;
+  };
 }
 
 bool in_list(const std::string& name) {
@@ -221,6 +254,10 @@ Scene make_scene(const SceneOptions& options) {
     const double lead = std::max(0.0, -r.start_s);
     Motion motion = drive_on_floor(ways[i], lead);
     if (options.name == "set-down-by-hand") motion = add_setting_down(scene, stage, motion, random);
+    if (options.name == "thing") {
+      add_robot(scene, thing_shape(options.thing), turned_by(motion, random.uniform(-kPi, kPi)), "thing");
+      continue;
+    }
     add_robot(scene, make_robot(r.model, r.laptop), motion,
               plan.robots.size() > 1 ? std::to_string(i + 1) : "robot");
   }

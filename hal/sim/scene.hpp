@@ -14,6 +14,7 @@
 #include "hal/create/drive_base.hpp"
 #include "hal/sim/depth_sensor.hpp"
 #include "hal/sim/surface.hpp"
+#include "hal/sim/things.hpp"
 
 namespace st::sim {
 
@@ -72,6 +73,7 @@ struct SceneOptions {
   std::uint64_t seed = 1;
   RobotModel robot = RobotModel::kCreate2;
   bool laptop = false;
+  ThingSpec thing;                 // of scene `thing`
   double seconds = 0;              // 0: as long as the scene's script
   double bow_steps = 0;            // smooth depth error over the image, peak, raw steps; 0: the seed's own
   std::vector<DriveCommand> path;  // replaces the scene's own path of the first robot; empty: its own

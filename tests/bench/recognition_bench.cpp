@@ -114,7 +114,7 @@ struct Robot {
       bench.fuse(render(Disc(0.17, 0.045), looking_at(1.0, 0.5 * i, 0.7), {}, random));
     bricks.resize(count_packed(bench.volume));
     packed = pack(bench.volume, bricks);
-    points.resize(sample_surface(bench.volume, points, scratch));
+    points.resize(sample_surface(bench.volume, points, scratch).points);
   }
   Bench bench, spare;
   std::vector<PackedBrick> bricks;
@@ -140,7 +140,7 @@ void SiftOneHeading(benchmark::State& state) {
   for (auto _ : state) {
     Pose start;
     start_from_silhouette(robot.points, robot.points, {1, 0, 0}, 0.1, start);
-    benchmark::DoNotOptimize(fit_to_volume(robot.bench.volume, robot.points, start, 8));
+    benchmark::DoNotOptimize(fit_to_volume(robot.bench.volume, {robot.points}, start, 8));
   }
 }
 

@@ -20,7 +20,7 @@ namespace {
 std::atomic<bool> g_stop{false};
 
 struct Options {
-  std::string scene, folder, path_file;
+  std::string scene, folder, path_file, thing = "1";
   RobotModel robot = RobotModel::kCreate2;
   std::uint64_t seed = 1;
   double seconds = 0, bow_steps = 0;
@@ -66,6 +66,7 @@ int simulate(const Options& o) {
   scene.seed = o.seed;
   scene.robot = o.robot;
   scene.laptop = o.laptop;
+  scene.thing = sim::parse_thing(o.thing);
   scene.seconds = o.seconds;
   scene.bow_steps = o.bow_steps;
   if (!o.path_file.empty()) scene.path = commands_of(load_path(o.path_file));
@@ -108,6 +109,11 @@ void add_simulate(CLI::App& app, int& exit_code) {
       ->type_name("")
       ->default_str("create2");
   command->add_flag("--laptop", options->laptop, "An open laptop lies on the first robot");
+  command
+      ->add_option("--thing", options->thing,
+                   "Which made-up thing moves in scene `thing`: a number, and print=NUMBER, scale=FACTOR or "
+                   "mirror after a colon")
+      ->capture_default_str();
   command->add_option("--seconds", options->seconds, "Length instead of the scene's own")
       ->check(CLI::PositiveNumber);
   command

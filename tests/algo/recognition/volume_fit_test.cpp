@@ -29,7 +29,7 @@ struct Thing {
     for (const double yaw : yaws) bench.fuse(render(solid, looking_at(1.1, yaw, kPitch), how, random));
     std::vector<Vec3f> scratch(kFitPoints);
     points.resize(kFitPoints);
-    points.resize(sample_surface(bench.volume, points, scratch));
+    points.resize(sample_surface(bench.volume, points, scratch).points);
   }
   Bench bench;
   std::vector<SurfacePoint> points;
@@ -51,7 +51,7 @@ VolumeFit search(const Thing& model, const Thing& seen, double seen_yaw) {
     Pose start;
     if (!start_from_silhouette(model.points, seen.points, viewer(seen_yaw), 2 * kPi * i / 36, start))
       continue;
-    const VolumeFit fit = fit_to_volume(model.bench.volume, seen.points, start, 8);
+    const VolumeFit fit = fit_to_volume(model.bench.volume, {seen.points}, start, 8);
     if (fit.score() > best.score()) best = fit;
   }
   return best;
@@ -85,7 +85,7 @@ TEST(VolumeFit, ThePrintDecidesTheHeadingOfADisc) {
 TEST(VolumeFit, AnotherShapeIsNotExplained) {
   const Thing model(Box({0.10, 0.06, 0.05}), all_round());
   const Thing seen(Disc(0.09, 0.05), {0.4});
-  CHECK_TRUE(search(model, seen, 0.4).explained < 0.75f);
+  CHECK_TRUE(search(model, seen, 0.4).explained < 0.8f);  // what is known explains 0.88 at least
 }
 
 TEST(VolumeFit, TheSilhouetteLeavesTheOutliersOut) {
@@ -96,4 +96,32 @@ TEST(VolumeFit, TheSilhouetteLeavesTheOutliersOut) {
   DOUBLES_EQUAL(0.1, static_cast<double>(s.nearest), 0.03);
   DOUBLES_EQUAL(0.1, static_cast<double>(s.middle()), 0.01);
   DOUBLES_EQUAL(0.19, static_cast<double>(s.width()), 0.03);
+}
+
+// The alignment holds a disc's place but not its turn; the print turns it.
+TEST(VolumeFit, TurningToThePrintFindsTheHeadingThatTheShapeLeavesOpen) {
+  const Disc disc(0.15, 0.05);
+  const Thing model(disc, all_round()), seen(disc, {1.0, 1.1});
+  const Pose start{rotation_z(0.12), {}};
+  const SeenSurface surface{seen.points};
+  const VolumeFit placed = fit_to_volume(model.bench.volume, surface, start, 12);
+  const VolumeFit turned = turn_to_print(model.bench.volume, surface, placed, 8, 0.02);
+  CHECK_TRUE(turned.score() > placed.score());
+  CHECK_TRUE(rotation_angle(placed.T_model_seen.R) > 0.1);
+  CHECK_TRUE(rotation_angle(turned.T_model_seen.R) < 0.05);
+}
+
+// Floor that hangs on to a thing is no part of its surface, and its box still reaches down to it.
+TEST(VolumeFit, TheSkirtIsLeftOutAndTheBoxReachesTheFloor) {
+  const Thing box(Box({0.10, 0.06, 0.05}), all_round());
+  const float skirt = skirt_m(0.10f);
+  DOUBLES_EQUAL(0.035, static_cast<double>(skirt), 1e-6);
+  DOUBLES_EQUAL(0.04, static_cast<double>(skirt_m(0.5f)), 1e-6);
+  for (const SurfacePoint& point : box.points) CHECK_TRUE(point.p.z > -0.05f + skirt - 0.006f);
+  std::vector<SurfacePoint> points(kFitPoints);
+  std::vector<Vec3f> scratch(kFitPoints);
+  const Bounds bounds = sample_surface(box.bench.volume, points, scratch).bounds;
+  CHECK_TRUE(bounds.low.z < -0.03);
+  DOUBLES_EQUAL(0.05, bounds.high.z, 0.006);
+  DOUBLES_EQUAL(0.10, bounds.high.x, 0.008);
 }
