@@ -274,7 +274,7 @@ void Recognition::conclude() {
 }
 
 Doubt doubt_of_model(const Recognised& r) {
-  constexpr float kLikeness = 0.35f, kAhead = 0.02f;
+  constexpr float kLikeness = 0.75f, kAhead = 0.02f;
   // Both stand on the floor: of another size, the surfaces meet only where one of them is lifted.
   constexpr double kMostLift_m = 0.007;
   if (r.model < 0) return Doubt::kNoCandidate;
