@@ -54,11 +54,12 @@ void RobotDriver::decide(double now_s, const DriverView& view) {
   watch(view, passed_s);
   Sight sight = view.sight;
   if (picked_.id != 0) sight.sees = base_.seen();
-  held_ = never_obeyed_ ? Reaction::kEnd : supervisor_.judge(now_s, status_, sight, speeds_);
+  held_ = never_obeyed_ ? Reaction::kEnd : supervisor_.judge(now_s, status_, sight, led_);
   if (held_ == Reaction::kNone)
     speeds_ = next_speeds(now_s, view, passed_s);
   else
     hold(passed_s);
+  led_ = speeds_;
 }
 
 void RobotDriver::hold(double passed_s) {

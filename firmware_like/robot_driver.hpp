@@ -84,6 +84,7 @@ class RobotDriver {
   SafetySupervisor supervisor_;
   Reaction held_ = Reaction::kNone;
   WheelSpeeds speeds_;
+  WheelSpeeds led_;  // by which it was led since the frame before, a stop for want of a frame aside
   RobotStatus status_;
 
   Phase phase_ = Phase::kLearning;

@@ -17,9 +17,11 @@ constexpr double kLeastWay_m = 0.03, kLeastTurn_rad = 0.1;  // of the wheels, wh
 constexpr double kGain = 0.25, kMostMisfit_m = 0.006, kMostMisfit_rad = 0.06, kLeastExplained = 0.9;
 constexpr double kFarthestBase_m = 0.3;
 
-// Speed along one direction of which so much is used up.
+// Speed along one direction of which so much is used up. Beyond the allowance, where a push has brought it,
+// it does not drive on, and is not driven back at the speed that the rest would ask for.
 double slowed(double speed, double used, double allowance) {
-  const double most = (allowance - used) / kLongestCommand_s, least = (-allowance - used) / kLongestCommand_s;
+  const double most = std::fmax(0.0, (allowance - used) / kLongestCommand_s);
+  const double least = std::fmin(0.0, (-allowance - used) / kLongestCommand_s);
   return speed > most ? most : speed < least ? least : speed;
 }
 

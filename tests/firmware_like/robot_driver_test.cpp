@@ -243,3 +243,26 @@ TEST(RobotDriver, NothingIsDrivenWhenNothingObeys) {
     CHECK(rig.stands());
   }
 }
+
+// Frames that come so late that the robot stands in between: what it drove until it stood counts as well.
+TEST(RobotDriver, LateFramesDoNotLetItDriveBlindForEver) {
+  const Path path = long_line();
+  Rig rig(Steering::kClosedLoop, &path);
+  rig.pick();
+  rig.robot_seen = false;
+  for (int i = 0; i < 60 && rig.driver.fault() == RobotFault::kNone; ++i) rig.frame(0.3);
+  CHECK(rig.driver.fault() == RobotFault::kNotSeen);
+}
+
+// Rolled aside by hand during the start motion: it is not to race back.
+TEST(RobotDriver, APushDuringTheStartMotionIsNotAnswered) {
+  Rig rig(Steering::kClosedLoop, nullptr);
+  for (int i = 0; i < 200 && rig.driver.served().state != std::string("start_motion"); ++i) rig.frame();
+  rig.base.reports.push_back({rig.t_s, 0.3, 0.3});
+  double fastest_mps = 0;
+  for (int i = 0; i < 90; ++i) {
+    rig.frame();
+    fastest_mps = std::max({fastest_mps, std::fabs(rig.base.left), std::fabs(rig.base.right)});
+  }
+  CHECK(fastest_mps < 0.15);
+}
