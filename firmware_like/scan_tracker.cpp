@@ -90,8 +90,8 @@ void ScanTracker::preprocess(const FrameInput& input, FrameReport& report) {
   course_ = Course::kFollowing;
 }
 
-// As wide as what the first frame shows is far, and a little behind it; the camera stands before the middle
-// of its near face.
+// As wide as what the first frame with enough readings shows is far, and a little behind it; the camera
+// stands before the middle of its near face.
 void ScanTracker::place_volume() {
   constexpr float kBehind = 1.1f, kBeforeNearest = 0.05f;
   const float far_m = depth_quantile_m(depth_.levels[0].z, 0.95);
@@ -120,6 +120,7 @@ Pose ScanTracker::place_to_try() const {
 }
 
 void ScanTracker::render(const LadderStep& step) {
+  if (course_ == Course::kWaiting) return;  // the volume has no place yet
   const DepthPyramid::Level& level = depth_.levels[finest(step)];
   RaycastOptions options;
   options.with_color = false;

@@ -34,13 +34,21 @@ std::uint32_t convert_by_table(const DepthTables& tables, const std::uint16_t* s
   return invalid;
 }
 
-// A reading stays one: what the correction would move out of the codes' range stops at its end.
-void correct(const std::int16_t* __restrict correction, std::uint16_t* __restrict code, int count) {
+// Returns the readings that are out of range by it.
+std::uint32_t correct(const DepthTables& tables, std::uint16_t* __restrict code, int count) {
+  const std::int16_t* __restrict correction = tables.correction().data();
+  const double k = tables.codes_per_inverse_m(), offset = tables.code_offset();
+  const int least = static_cast<int>(k / kFarthest_m - offset) + 1;
+  const int nearest = static_cast<int>(k / kNearest_m - offset),
+            most = nearest < kCodes ? nearest : kCodes - 1;
+  std::uint32_t lost_pixels = 0;
   for (int i = 0; i < count; ++i) {
     const int moved = code[i] + correction[i];
-    const int kept = moved < 1 ? 1 : moved < kCodes ? moved : kCodes - 1;
-    code[i] = code[i] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(kept);
+    const bool kept = code[i] != 0 && moved >= least && moved <= most;
+    lost_pixels += code[i] != 0 && !kept ? 1u : 0u;
+    code[i] = kept ? static_cast<std::uint16_t>(moved) : std::uint16_t{0};
   }
+  return lost_pixels;
 }
 
 }  // namespace
@@ -68,7 +76,7 @@ CleanDepth preprocess(const DepthTables& tables, ImageView<const std::uint16_t> 
   const bool linear = tables.raw_last() >= tables.raw_first();  // raw encoding, and some value in range
   out.invalid_pixels = linear ? convert_raw(tables, out.stored.data, code.data, count)
                               : convert_by_table(tables, out.stored.data, code.data, count);
-  if (!tables.correction().empty()) correct(tables.correction().data(), code.data, count);
+  if (!tables.correction().empty()) out.invalid_pixels += correct(tables, code.data, count);
   return out;
 }
 

@@ -48,9 +48,18 @@ std::uint32_t undistort(const DepthTables& tables, const std::uint16_t* stored, 
   return invalid;
 }
 
-// 1 / z grows by the correction.
-void correct(const std::int16_t* __restrict correction, float* __restrict z, int count, float inverse_m) {
-  for (int i = 0; i < count; ++i) z[i] /= 1.0f + z[i] * inverse_m * static_cast<float>(correction[i]);
+// 1 / z grows by the correction. Returns the readings that are out of range by it.
+std::uint32_t correct(const std::int16_t* __restrict correction, float* __restrict z, int count,
+                      float inverse_m) {
+  constexpr auto kNear = static_cast<float>(kNearest_m), kFar = static_cast<float>(kFarthest_m);
+  std::uint32_t lost_pixels = 0;
+  for (int i = 0; i < count; ++i) {
+    const float m = z[i] / (1.0f + z[i] * inverse_m * static_cast<float>(correction[i]));
+    const bool kept = m >= kNear && m <= kFar;
+    lost_pixels += z[i] > 0.0f && !kept ? 1u : 0u;
+    z[i] = kept ? m : 0.0f;
+  }
+  return lost_pixels;
 }
 
 }  // namespace
@@ -81,8 +90,8 @@ std::uint32_t fill_pyramid(const DepthTables& tables, ImageView<const std::uint1
         triangulate(stored.data, z.data, count, tables.calibration(), tables.raw_first(), tables.raw_last());
   }
   if (!tables.correction().empty())
-    correct(tables.correction().data(), z.data, count,
-            static_cast<float>(1.0 / tables.codes_per_inverse_m()));
+    invalid += correct(tables.correction().data(), z.data, count,
+                       static_cast<float>(1.0 / tables.codes_per_inverse_m()));
   for (int i = 1; i < DepthPyramid::kLevels; ++i) {
     const ImageView<float>&fine = pyramid.levels[i - 1].z, &coarse = pyramid.levels[i].z;
     halve_depth(fine.data, fine.width, coarse.data, coarse.width, coarse.height);

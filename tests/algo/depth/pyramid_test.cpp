@@ -1,6 +1,7 @@
 #include "algo/depth/pyramid.hpp"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "tests/support/bound.hpp"
@@ -95,5 +96,22 @@ TEST(DepthPyramid, ACorrectionAddsToTheInverseOfDepth) {
     const double plain = static_cast<double>(f.tables.z_of_stored()[value]);
     DOUBLES_EQUAL(1 / (1 / plain + 3 / c.raw_a), static_cast<double>(f.pyramid.levels[0].z.data[0]), 1e-5);
     DOUBLES_EQUAL(0, f.pyramid.levels[0].z.data[1], 0);
+  }
+}
+
+// The largest correction that a camera file may hold would turn a far reading inside out.
+TEST(DepthPyramid, WhatACorrectionMovesOutOfRangeIsNoReading) {
+  for (const float steps : {-64.0f, 64.0f}) {
+    Calibration c = small_camera(DepthEncoding::kRaw11);
+    c.correction.columns = c.correction.rows = 2;
+    for (int i = 0; i < 4; ++i) c.correction.steps[i] = steps;
+    Filled f(c);
+    for (std::size_t i = 0; i < f.stored.size(); ++i) f.stored[i] = static_cast<std::uint16_t>(400 + i % 700);
+    std::uint32_t none = f.fill();
+    for (const float z : std::span<const float>(f.pyramid.levels[0].z.data, f.stored.size())) {
+      CHECK(z == 0 || (z >= 0.35f && z <= 10.0f));
+      none -= z == 0 ? 1 : 0;
+    }
+    UNSIGNED_LONGS_EQUAL(0, none);
   }
 }
