@@ -74,7 +74,7 @@ class ObjectTracker {
   void publish(FrameReport& report);
 
   // For the end of a run.
-  // The object that went along with the wheels up to now; 0: none did.
+  // The object that went along with the wheels up to now; 0: none, or more than one, did.
   int wheeled_id() const { return wheeled_id_; }
   std::span<const Track> tracks() const { return tracks_; }
   const ObjectCounts& counts() const { return counts_; }

@@ -1,6 +1,7 @@
 #include "algo/tracking/way_match.hpp"
 
 #include <cmath>
+#include <initializer_list>
 
 #include "algo/core/scalar_math.hpp"
 
@@ -53,15 +54,20 @@ void WayMatch::add(int id, double x_m, double y_m) {
   entry->y_m = y_m;
 }
 
+// An object that is in sight comes before those that were: a robot that was lost may be back under another
+// number.
 int WayMatch::best() const {
-  int best = 0;
-  for (const Entry& entry : entries_) {
-    if (entry.told2 < kLeastWay_m * kLeastWay_m) continue;
-    if (entry.misfit2 > kMostMisfit * kMostMisfit * entry.told2) continue;
-    if (best != 0) return 0;
-    best = entry.id;
+  for (const bool fresh : {true, false}) {
+    int best = 0, matches = 0;
+    for (const Entry& entry : entries_) {
+      if ((entry.window >= window_) != fresh || entry.told2 < kLeastWay_m * kLeastWay_m) continue;
+      if (entry.misfit2 > kMostMisfit * kMostMisfit * entry.told2) continue;
+      best = entry.id;
+      ++matches;
+    }
+    if (matches > 0) return matches == 1 ? best : 0;
   }
-  return best;
+  return 0;
 }
 
 }  // namespace st

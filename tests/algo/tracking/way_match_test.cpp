@@ -106,3 +106,13 @@ TEST(WayMatch, ARobotThatIsCarriedAwayIsTheRobotNoMore) {
   }
   LONGS_EQUAL(0, match.best());
 }
+
+TEST(WayMatch, ARobotThatIsBackUnderAnotherNumberIsItself) {
+  for (int k = 0; k < 300; ++k) {
+    robot.drive(0.2, 0.3);
+    match.begin_frame(robot.wheels);
+    match.add(k < 150 ? 1 : 2, robot.x(0), robot.y(0));
+    if (k == 149) LONGS_EQUAL(1, match.best());
+  }
+  LONGS_EQUAL(2, match.best());
+}
