@@ -70,7 +70,7 @@ bool ObjectTracker::match_frame_before(Track& track, std::size_t k) {
   SeenFeatures& before = seen_features_[k];
   const FeatureSet now = recognition_.describe(track.volume);
   const FeatureSet then{before.features.first(before.used), before.descriptors.first(before.used)};
-  const bool first = track.good_poses == 0;
+  const bool first = track.good_poses == 0 || before.used == 0;
   UprightFit fit;
   int matches = 0;
   if (!first) fit = recognition_.match(now, then, kToleranceVoxels, matches);

@@ -93,8 +93,8 @@ void ObjectTracker::prove(Track& track, const Recognised& answer) {
     adopt_model(track, answer.model, T_camera_model);
   } else {
     std::swap(track.volume, recognition_.volume());
-    render_one(track, track.T_camera_object);
   }
+  render_one(track, track.T_camera_object);
   if (last || doubt != Doubt::kNone) settle(track, answer, doubt);
 }
 
@@ -103,9 +103,11 @@ void ObjectTracker::settle(Track& track, const Recognised& answer, Doubt doubt) 
   proof_ = {};
   const bool recognised = doubt == Doubt::kNone || doubt == Doubt::kHeading;
   if (recognised && track.named_model == answer.model && doubt == Doubt::kHeading) return;  // said already
-  if (recognised) {
-    track.named_model = answer.model;
-    if (ObjectCount* count = count_of(track.id)) count->named_model = answer.model;
+  // Seen from more sides it may turn out to be another thing, after all.
+  const bool refuted = !recognised && doubt != Doubt::kRival;
+  if (recognised || refuted) {
+    track.named_model = recognised ? answer.model : -1;
+    if (ObjectCount* count = count_of(track.id)) count->named_model = track.named_model;
   }
   log(recognised ? EventKind::kRecognised : EventKind::kUnknownObject, track.id,
       static_cast<double>(answer.fit.score()), answer.agreeing, static_cast<double>(doubt));

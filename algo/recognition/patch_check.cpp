@@ -129,6 +129,9 @@ bool PatchCheck::refutes(const PatchCheck& other) const {
   return other.shape_off + other.print_off >= 2 + 2 * (shape_off + print_off);
 }
 
-bool PatchCheck::agrees() const { return 20 * shape_off <= shape && 20 * print_off <= print; }
+bool PatchCheck::agrees() const {
+  constexpr int kLeastPatches = 6;  // fewer show nothing
+  return shape >= kLeastPatches && 20 * shape_off <= shape && 20 * print_off <= print;
+}
 
 }  // namespace st

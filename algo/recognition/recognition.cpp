@@ -246,8 +246,8 @@ namespace {
 constexpr float kExplained = 0.88f;  // least share of the surface, of a sure answer
 constexpr int kColoured = 60;        // points with a colour, from which on the print counts
 
-// Two models that the subject fits as well, print and all, are one thing that is stored twice: they do not
-// count against each other.
+// Two models that the subject fits well, print and all, are one thing that is stored twice: they do not count
+// against each other.
 bool is_twin(const VolumeFit& fit) {
   constexpr float kSamePrint = 0.85f;
   return fit.explained >= kExplained && fit.colored >= kColoured && fit.likeness >= kSamePrint;
