@@ -19,8 +19,8 @@ class ModeRun {
   virtual void plan_memory(MemoryPlan& plan) = 0;
   virtual void start() = 0;  // once the plan is sealed
   virtual std::unique_ptr<Loop> make_loop(const LoopParts& parts) = 0;
-  // After the loop, before the rest of the run's files: what it learned goes where it is kept. Throws Failure
-  // when it cannot be.
+  // After the loop and describe(), before the rest of the run's files: what it learned goes where it is kept.
+  // Throws Failure when it cannot be.
   virtual void keep(RunEnd&) {}
   // After the loop: what was tracked, and its models as meshes, unless a second Ctrl-C asked for none. They
   // live as long as this object.

@@ -177,11 +177,15 @@ SessionResult run_session(const SessionOptions& options) {
   if (driver) name_steering_object(*driver, end);
   end.peak_rss_bytes = peak_rss_bytes();
   finish_run(writer, end, path ? sampled(*path) : std::vector<PathSample>{});
-  result.code = not_kept ? *not_kept : exit_code_of(end);
-  if (why == LoopEnd::kSourceFault) result.trouble = info.name + ": " + source->fault();
+  // How the run ended comes before what its end cost.
+  result.code = exit_code_of(end);
+  const bool ran_through = result.code == ExitCode::kDone || result.code == ExitCode::kTrackFailed;
+  if (not_kept && ran_through) result.code = *not_kept;
+  const std::string more = result.trouble.empty() ? "" : "; " + result.trouble;
+  if (why == LoopEnd::kSourceFault) result.trouble = info.name + ": " + source->fault() + more;
   if (why == LoopEnd::kRobotFault)
     result.trouble = "robot " + options.robot.port + ": " + name_of(driver->fault()) + ": " +
-                     rule_of(driver->fault()).what_to_do;
+                     rule_of(driver->fault()).what_to_do + more;
   return result;
 }
 
