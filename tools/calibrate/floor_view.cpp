@@ -8,24 +8,12 @@
 namespace st {
 namespace {
 
-// Runs `bind` on memory of the right size.
-template <typename Bind>
-std::vector<std::uint8_t> bound_memory(Bind bind) {
-  Bump measure;
-  bind(measure);
-  std::vector<std::uint8_t> bytes(measure.used() + Bump::kAlign);
-  const auto at = reinterpret_cast<std::uintptr_t>(bytes.data());
-  Bump take(bytes.data() + (Bump::kAlign - at % Bump::kAlign) % Bump::kAlign, measure.used());
-  bind(take);
-  return bytes;
-}
-
 constexpr double kNotFloor = 1e6;
 
 }  // namespace
 
 FloorView::FloorView(const Calibration& calibration)
-    : memory_(bound_memory([&](Bump& memory) { tables_.bind(memory, calibration); })) {
+    : memory_([&](Bump& memory) { tables_.bind(memory, calibration); }) {
   tables_.configure(calibration);
   const auto pixels = static_cast<std::size_t>(tables_.width()) * static_cast<std::size_t>(tables_.height());
   code_.resize(pixels);
@@ -56,7 +44,7 @@ double FloorView::mean(int u, int v) const {
 
 Floor FloorView::find_floor() {
   FloorFinder finder;
-  const std::vector<std::uint8_t> memory = bound_memory([&](Bump& bump) { finder.bind(bump); });
+  const HeapMemory memory([&](Bump& bump) { finder.bind(bump); });
   for (int v = 0; v < tables_.height(); ++v)
     for (int u = 0; u < tables_.width(); ++u)
       stored_[static_cast<std::size_t>(v * tables_.width() + u)] =

@@ -7,6 +7,7 @@
 #include "algo/core/records.hpp"
 #include "algo/depth/depth_tables.hpp"
 #include "algo/segmentation/floor.hpp"
+#include "firmware_like/heap_memory.hpp"
 
 namespace st {
 
@@ -20,6 +21,8 @@ inline constexpr int kFloorPatch_px = 16;
 class FloorView {
  public:
   explicit FloorView(const Calibration& calibration);
+  FloorView(const FloorView&) = delete;  // the tables point into the memory
+  FloorView(FloorView&&) = default;
 
   void add(const FrameInput& frame);
   int frames() const { return frames_; }
@@ -42,7 +45,7 @@ class FloorView {
   std::vector<bool> floor_patches(const Floor& floor) const;
 
   DepthTables tables_;
-  std::vector<std::uint8_t> memory_;  // of the tables
+  HeapMemory memory_;  // of the tables
   std::vector<std::uint16_t> code_, stored_;
   std::vector<std::uint32_t> sum_, count_;
   Vec3 gravity_{};

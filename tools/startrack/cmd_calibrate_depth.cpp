@@ -51,6 +51,11 @@ Seen look(const std::string& recording, const Arguments& arguments, Calibration&
     calibration = info.calibration;
     calibration.correction = {};
   }
+  const Calibration& own = info.calibration;
+  if (own.depth.width != calibration.depth.width || own.depth.height != calibration.depth.height ||
+      own.raw_a != calibration.raw_a || own.raw_b != calibration.raw_b)
+    throw Failure(ExitCode::kBadInput, recording + ": is of another Kinect than " +
+                                           arguments.recordings.front() + "; calibrate each by itself");
   Seen seen{recording, FloorView(calibration), {}};
   source->start();
   FrameInput frame;
@@ -159,8 +164,8 @@ void add_calibrate_depth(CLI::App& calibrate_command, int& exit_code) {
   depth->footer(
       "Point the Kinect at a bare floor that fills the image, steeply and less steeply, 5 s each, then "
       "measure:\n"
-      "  startrack record --out floor-1 --seconds 5\n"
-      "  startrack record --out floor-2 --seconds 5\n"
+      "  startrack record floor-1 --seconds 5\n"
+      "  startrack record floor-2 --seconds 5\n"
       "  startrack calibrate depth floor-1 floor-2 --out camera.toml\n"
       "  startrack run --source kinect --camera camera.toml");
   depth->add_option("RECORDING", arguments->recordings, "still recordings of a floor, of one Kinect")
