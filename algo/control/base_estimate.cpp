@@ -254,15 +254,21 @@ void set_sigmas(const Symmetric3& cov, const Parameters& p, BaseEstimate& estima
   estimate.sigma_rad = std::min(kPi, std::sqrt(std::max(0.0, cov.m[0][0])));
 }
 
-// Net travel along the estimated direction: negative when it points backwards.
+// Travel along the estimated direction, negative when it points backwards: the net travel, and where about as
+// much was driven back as ahead, that of the beginning, since who drives there and back drives there first.
 double net_forward(std::span<const BaseWindow> windows, const Parameters& p) {
   const SinCos f = sin_cos(p.phi);
-  double sum = 0;
-  for (const BaseWindow& w : windows)
-    if (!w.on_the_spot)
-      sum += f.cos * (w.last[0] - w.first[0]) + f.sin * (w.last[1] - w.first[1]) -
-             p.l * (w.last[2] - w.first[2]);
-  return sum;
+  constexpr double kOneWay = 0.2, kBegun_m = 0.05;
+  double sum = 0, all = 0, begun = 0;
+  for (const BaseWindow& w : windows) {
+    if (w.on_the_spot) continue;
+    const double way =
+        f.cos * (w.last[0] - w.first[0]) + f.sin * (w.last[1] - w.first[1]) - p.l * (w.last[2] - w.first[2]);
+    if (begun == 0 && std::fabs(way) > kBegun_m) begun = way;
+    sum += way;
+    all += std::fabs(way);
+  }
+  return std::fabs(sum) > kOneWay * all ? sum : begun;
 }
 
 }  // namespace

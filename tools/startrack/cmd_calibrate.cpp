@@ -14,13 +14,14 @@
 #include "hal/results/run_record.hpp"
 #include "tools/report/run_report.hpp"
 #include "tools/startrack/commands.hpp"
+#include "tools/startrack/out_file.hpp"
 
 namespace st {
 namespace {
 
 struct Arguments {
   std::vector<std::string> runs, recordings;
-  std::string out = "robot.toml";
+  OutFile out{"robot.toml"};
 };
 
 // One drive: where the base was seen, and what the wheels told.
@@ -100,6 +101,7 @@ Pose2 end_error(const Drive& drive, const WheelFit& fit, bool calibrated) {
 }
 
 int calibrate(const Arguments& arguments) {
+  arguments.out.check(arguments.out.path);
   if (arguments.runs.size() != arguments.recordings.size())
     throw Failure(ExitCode::kBadInput, "calibrate robot: give a --recording for every --run, in their order");
   std::vector<Drive> drives;
@@ -139,11 +141,12 @@ int calibrate(const Arguments& arguments) {
         drive.name.c_str(), 1000 * std::hypot(raw.x, raw.y), raw.yaw * 180 / kPi,
         1000 * std::hypot(now.x, now.y), now.yaw * 180 / kPi);
   }
-  std::ofstream file(arguments.out);
+  std::ofstream file(arguments.out.path);
   file << format_wheels_toml(robot);
   file.close();
-  if (!file) throw Failure(ExitCode::kBadInput, arguments.out + ": cannot be written; give another --out");
-  std::printf("wheels: %s\n", arguments.out.c_str());
+  if (!file)
+    throw Failure(ExitCode::kBadInput, arguments.out.path + ": cannot be written; give another --out");
+  std::printf("wheels: %s\n", arguments.out.path.c_str());
   return static_cast<int>(ExitCode::kDone);
 }
 
@@ -169,7 +172,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   robot->add_option("--recording", arguments->recordings, "the recordings of those runs, in their order")
       ->required()
       ->type_name("REC...");
-  robot->add_option("--out", arguments->out, "file to write")->capture_default_str()->type_name("FILE");
+  arguments->out.add_options(*robot, "file to write (default: robot.toml)", "FILE");
   robot->callback([arguments, &exit_code] { exit_code = calibrate(*arguments); });
   add_calibrate_depth(*command, exit_code);
 }

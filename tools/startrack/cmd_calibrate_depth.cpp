@@ -14,6 +14,7 @@
 #include "hal/system/stop_signal.hpp"
 #include "tools/calibrate/depth_fit.hpp"
 #include "tools/startrack/commands.hpp"
+#include "tools/startrack/out_file.hpp"
 
 namespace st {
 namespace {
@@ -21,7 +22,8 @@ namespace {
 struct Arguments {
   std::vector<std::string> recordings;
   std::vector<double> heights_m;
-  std::string camera_file, out = "camera.toml";
+  std::string camera_file;
+  OutFile out{"camera.toml"};
   int frames = 150;
 };
 
@@ -134,6 +136,7 @@ int calibrate(const Arguments& arguments) {
   if (!arguments.heights_m.empty() && arguments.heights_m.size() != arguments.recordings.size())
     throw Failure(ExitCode::kBadInput,
                   "calibrate depth: give a --height-m for every recording, in their order, or none");
+  arguments.out.check(arguments.out.path);
   watch_stop_signals();
   Calibration calibration;
   std::vector<Seen> views;
@@ -147,11 +150,12 @@ int calibrate(const Arguments& arguments) {
   print_fit(calibration, fit);
   if (!arguments.heights_m.empty()) fit_constant(arguments, fit, calibration);
   if (fit.worth_it()) calibration.correction = fit.correction;
-  std::ofstream file(arguments.out);
+  std::ofstream file(arguments.out.path);
   file << format_camera_toml(calibration);
   file.close();
-  if (!file) throw Failure(ExitCode::kBadInput, arguments.out + ": cannot be written; give another --out");
-  std::printf("camera: %s\n", arguments.out.c_str());
+  if (!file)
+    throw Failure(ExitCode::kBadInput, arguments.out.path + ": cannot be written; give another --out");
+  std::printf("camera: %s\n", arguments.out.path.c_str());
   return static_cast<int>(ExitCode::kDone);
 }
 
@@ -183,7 +187,7 @@ void add_calibrate_depth(CLI::App& calibrate_command, int& exit_code) {
   depth->add_option("--frames", arguments->frames, "frames of each recording to average")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  depth->add_option("--out", arguments->out, "file to write")->capture_default_str()->type_name("FILE");
+  arguments->out.add_options(*depth, "file to write (default: camera.toml)", "FILE");
   depth->callback([arguments, &exit_code] { exit_code = calibrate(*arguments); });
 }
 

@@ -8,12 +8,14 @@
 #include "hal/results/line_file.hpp"
 #include "hal/results/tum_file.hpp"
 #include "tools/startrack/commands.hpp"
+#include "tools/startrack/out_file.hpp"
 
 namespace st {
 namespace {
 
 struct CutOptions {
-  std::string run, out;
+  std::string run;
+  OutFile out;
   int cluster = 0;  // 0: the most central
   bool closed = false;
 };
@@ -27,6 +29,7 @@ void print_clusters(const std::vector<Cluster>& clusters) {
 
 void cut(const CutOptions& o) {
   constexpr float kHighestHole_m = 0.06f;
+  if (!o.out.path.empty()) o.out.check(o.out.path);
   const std::string scene_file = o.run + "/scene.ply", pose_file = o.run + "/camera.tum";
   if (!std::filesystem::exists(scene_file))
     throw Failure(ExitCode::kBadInput,
@@ -43,15 +46,15 @@ void cut(const CutOptions& o) {
     throw Failure(ExitCode::kBadInput,
                   scene_file + ": nothing stands on the plane; scan nearer, or with a smaller --extent");
   print_clusters(clusters);
-  if (o.out.empty()) return;
+  if (o.out.path.empty()) return;
   const auto chosen = static_cast<std::size_t>(o.cluster == 0 ? 1 : o.cluster);
   if (chosen > clusters.size())
     throw Failure(ExitCode::kBadInput, "--cluster " + std::to_string(o.cluster) + ": there are " +
                                            std::to_string(clusters.size()) + " clusters");
   Mesh object = in_own_frame(clusters[chosen - 1], plane);
   if (o.closed) close_bottom(object, kHighestHole_m);
-  write_whole_file(o.out, format_ply(object.view()));
-  std::printf("object: %s (cluster %zu)\n", o.out.c_str(), chosen);
+  write_whole_file(o.out.path, format_ply(object.view()));
+  std::printf("object: %s (cluster %zu)\n", o.out.path.c_str(), chosen);
 }
 
 }  // namespace
@@ -60,9 +63,8 @@ void add_cut(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CutOptions>();
   CLI::App* command = app.add_subcommand("cut", "Cut an object out of a finished scan");
   command->add_option("RUN", options->run, "run folder of replay or run --mode scan")->required();
-  command
-      ->add_option("--out", options->out, "PLY file of the object; without it the clusters are only listed")
-      ->type_name("FILE");
+  options->out.add_options(*command, "PLY file of the object; without it the clusters are only listed",
+                           "FILE");
   command->add_option("--cluster", options->cluster, "which one (default: the most central)")
       ->check(CLI::Range(1, 1000));
   command->add_flag("--close-bottom", options->closed,

@@ -10,13 +10,15 @@
 #include "hal/results/line_file.hpp"
 #include "tools/startrack/commands.hpp"
 #include "tools/startrack/model_picture.hpp"
+#include "tools/startrack/out_file.hpp"
 #include "tools/startrack/volume_file.hpp"
 
 namespace st {
 namespace {
 
 struct Arguments {
-  std::string database = "models.db", model, name, file, out, descriptors;
+  std::string database = "models.db", model, name, file, descriptors;
+  OutFile out;
   double scale = 1;
   int version = 0;
 };
@@ -54,6 +56,8 @@ int list(const Arguments& a) {
 int show(const Arguments& a) {
   ModelStore store = open_existing(a.database);
   const StoredModel model = wanted(store, a);
+  const std::string out = a.out.path.empty() ? model.entry.name + ".png" : a.out.path;
+  a.out.check(out);
   const OwnedModel content = decode_model(model.content, model.entry.name);
   const ColorStats& color = content.traits.color;
   std::printf("name       %s\nid         %s\nversion    %d\ncreated    %s\n", model.entry.name.c_str(),
@@ -71,7 +75,6 @@ int show(const Arguments& a) {
                 v.source.c_str(), v.has_content ? "" : "  (content dropped)");
   ModelMeshes meshes;
   const MeshView mesh = mesh_of(content.view(), meshes);
-  const std::string out = a.out.empty() ? model.entry.name + ".png" : a.out;
   write_whole_file(out, model_picture(mesh, content.features));
   std::printf("picture: %s\n", out.c_str());
   return 0;
@@ -97,7 +100,8 @@ int export_model(const Arguments& a) {
   const StoredModel model = wanted(store, a);
   const OwnedModel content = decode_model(model.content, model.entry.name);
   ModelMeshes meshes;
-  const std::string out = a.out.empty() ? model.entry.name + ".ply" : a.out;
+  const std::string out = a.out.path.empty() ? model.entry.name + ".ply" : a.out.path;
+  a.out.check(out);
   write_whole_file(out, format_ply(mesh_of(content.view(), meshes)));
   std::printf("mesh: %s\n", out.c_str());
   return 0;
@@ -153,7 +157,7 @@ void add_models(CLI::App& app, int& exit_code) {
   add(*models, "list", "One line per model", "list --models lab.db", a, list, exit_code);
   CLI::App* c = model(add(*models, "show", "All about one model, and a picture of it with its keypoints",
                           "show create --out create.png", a, show, exit_code));
-  c->add_option("--out", a->out, "the picture (default: MODEL.png)")->type_name("PNG");
+  a->out.add_options(*c, "the picture (default: MODEL.png)", "PNG");
   c->add_option("--version", a->version, "an older one (default: the newest)")->check(CLI::PositiveNumber);
   c = add(*models, "import", "A model from a mesh (PLY, metres, z up, standing on z = 0)",
           "import create.ply --name create", a, import, exit_code);
@@ -164,7 +168,7 @@ void add_models(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   c = model(add(*models, "export", "A model as a mesh", "export create --out create.ply", a, export_model,
                 exit_code));
-  c->add_option("--out", a->out, "the mesh (default: MODEL.ply)")->type_name("PLY");
+  a->out.add_options(*c, "the mesh (default: MODEL.ply)", "PLY");
   c->add_option("--version", a->version, "an older one (default: the newest)")->check(CLI::PositiveNumber);
   c = model(
       add(*models, "rename", "Give a model another name", "rename object-1 create", a, rename, exit_code));

@@ -51,14 +51,14 @@ void add_run(CLI::App& app, int& exit_code) {
   add_session_options(*command, *options);
   command->callback([options, on_bump, &exit_code] {
     options->on_bump = reaction_on_bump(*on_bump);
-    if (!options->robot.port.empty() && options->path_file.empty() && options->serve.empty())
-      throw Failure(ExitCode::kBadInput, "--robot " + options->robot.port +
-                                             " needs --path FILE, or --serve PORT for a program that drives "
-                                             "it: what shall it do?");
     if (!options->robot.port.empty() && options->loop.mode == Mode::kScan)
       throw Failure(ExitCode::kBadInput,
                     "--mode scan moves the camera by hand and watches no robot: leave out --robot " +
                         options->robot.port + ", or --mode scan");
+    if (!options->robot.port.empty() && options->path_file.empty() && options->serve.empty())
+      throw Failure(ExitCode::kBadInput, "--robot " + options->robot.port +
+                                             " needs --path FILE, or --serve PORT for a program that drives "
+                                             "it: what shall it do?");
     if (options->closed_loop && (options->robot.port.empty() || options->path_file.empty()))
       throw Failure(ExitCode::kBadInput,
                     "--loop closed needs --robot PORT and --path FILE: what is to follow what?");

@@ -51,6 +51,8 @@ void prepare_folder(const Options& o) {
     throw Failure(
         ExitCode::kBadInput,
         o.folder + ": is not empty; choose another --out, or --force to replace the recording in it");
+  if (!fs::exists(o.folder + "/camera.toml"))
+    throw Failure(ExitCode::kBadInput, o.folder + ": holds files, but no recording; choose another --out");
   sim::clear_recording(o.folder);
 }
 
@@ -111,8 +113,8 @@ void add_simulate(CLI::App& app, int& exit_code) {
   command->add_flag("--laptop", options->laptop, "An open laptop lies on the first robot");
   command
       ->add_option("--thing", options->thing,
-                   "Which made-up thing moves in scene `thing`: a number, and print=NUMBER, scale=FACTOR or "
-                   "mirror after a colon")
+                   "Which made-up thing moves in scene `thing`: a number, or with its relations "
+                   "12:print=7,scale=1.12,mirror")
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "Length instead of the scene's own")
       ->check(CLI::PositiveNumber);

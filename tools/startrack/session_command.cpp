@@ -91,7 +91,7 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
           },
           "star (frame to updated model, all terms), listing1 (the paper as printed: closest-point ICP "
           "against the "
-          "updated model, no other term) frame-to-frame (its first approach), recognition (each frame alone "
+          "updated model, no other term), frame-to-frame (its first approach), recognition (each frame alone "
           "against --models, pose from 3-D "
           "SIFT matches) or sift (matches with the frame before)")
       ->type_name("NAME");

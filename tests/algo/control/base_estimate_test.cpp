@@ -171,3 +171,12 @@ TEST(BaseEstimate, TheTruthOfARecordingGivesItsBase) {
     DOUBLES_EQUAL(0, yaw_error(e, kBase), 0.2 * kDeg);
   }
 }
+
+TEST(BaseEstimate, WhoDrivesThereAndBackLooksThere) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    MotionScript script({1, 2, 0.3});
+    script.drive(0, 0, 1).drive(0.3, 0, 3).drive(0, 0, 1).drive(-0.3, 0, 3.02).drive(0, 0, 1);
+    const BaseEstimate e = estimate(seen_object(script.samples(), kBase, kNoiseM, kNoiseRad, seed));
+    CHECK(yaw_error(e, kBase) < 10 * kDeg);
+  }
+}

@@ -47,6 +47,14 @@ TEST(CalibrateDepth, ASensorWithoutBowAndAWrongCommandLineAreSaid) {
   STRCMP_CONTAINS("cannot be written", nowhere.err.c_str());
 }
 
+TEST(CalibrateDepth, WhatStandsThereIsNotOverwritten) {
+  const std::string file = folder.file("mine.db", "precious");
+  const Said said = startrack({"calibrate", "depth", folder / "any", "--out", file});
+  LONGS_EQUAL(2, said.code);
+  STRCMP_CONTAINS("--force", said.err.c_str());
+  STRCMP_EQUAL("precious", content(file).c_str());
+}
+
 TEST(CalibrateDepth, MetresInsteadOfRawReadingsAreRefused) {
   TempFolder tum;
   tum.file("camera.toml", "width = 8\nheight = 4\nfx = 6\nfy = 6\ncx = 4\ncy = 2\n");
