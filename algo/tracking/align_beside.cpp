@@ -3,9 +3,9 @@
 namespace st {
 namespace {
 
-constexpr int kSteps = 3;        // to each side
+constexpr int kSteps = 3;                      // to each side
 constexpr int kTryStride = 2, kTryLevels = 2;  // enough to tell them apart
-constexpr float kBetter = 0.8f;  // of the residuals of a heading that is worth a change
+constexpr float kBetter = 0.8f;                // of the residuals of a heading that is worth a change
 
 }  // namespace
 
