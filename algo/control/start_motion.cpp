@@ -20,8 +20,9 @@ constexpr double kFarthestBase_m = 0.3;
 // Speed along one direction of which so much is used up. Beyond the allowance, where a push has brought it,
 // it does not drive on, and is not driven back at the speed that the rest would ask for.
 double slowed(double speed, double used, double allowance) {
-  const double most = std::fmax(0.0, (allowance - used) / kLongestCommand_s);
-  const double least = std::fmin(0.0, (-allowance - used) / kLongestCommand_s);
+  const double ahead = allowance - used, back = -allowance - used;
+  const double most = ahead > 0 ? ahead / kLongestCommand_s : 0;
+  const double least = back < 0 ? back / kLongestCommand_s : 0;
   return speed > most ? most : speed < least ? least : speed;
 }
 
