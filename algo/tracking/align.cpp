@@ -125,7 +125,7 @@ Step solve(const NormalEquations& eq) {
 AlignResult align(const AlignInput& in, AlignScratch& scratch) {
   build_view_table(in.view, scratch.view);
   arrange_points(in.points, PointTable::kMost / static_cast<std::size_t>(in.point_stride), scratch.points);
-  scratch.outline_count = find_outline(scratch.view, in.camera, scratch.outline);
+  scratch.outline_count = in.terms.contour ? find_outline(scratch.view, in.camera, scratch.outline) : 0;
   return align_again(in, scratch);
 }
 

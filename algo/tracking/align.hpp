@@ -90,8 +90,8 @@ struct AlignScratch {
 
 AlignResult align(const AlignInput& input, AlignScratch& scratch);
 
-// The same points beside the same view once more, with another start, prior or terms: what align() has laid
-// out in `scratch` is used again. A third of the time is spared.
+// The same points beside the same view once more, with another start or prior, or with fewer terms: what
+// align() has laid out in `scratch` is used again. A third of the time is spared.
 AlignResult align_again(const AlignInput& input, AlignScratch& scratch);
 
 // One-sigma error of the turn about `axis` (camera frame, unit) when everything else is unknown too; huge
