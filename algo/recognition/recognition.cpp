@@ -244,13 +244,12 @@ int Recognition::refine() {
 namespace {
 
 constexpr float kExplained = 0.88f;  // least share of the surface, of a sure answer
-constexpr int kColoured = 60;        // points with a colour, from which on the print counts
 
 // Two models that the subject fits well, print and all, are one thing that is stored twice: they do not count
 // against each other.
 bool is_twin(const VolumeFit& fit) {
   constexpr float kSamePrint = 0.85f;
-  return fit.explained >= kExplained && fit.colored >= kColoured && fit.likeness >= kSamePrint;
+  return fit.explained >= kExplained && fit.colored >= kLeastColoured && fit.likeness >= kSamePrint;
 }
 
 }  // namespace
@@ -280,7 +279,7 @@ Doubt doubt_of_model(const Recognised& r) {
   if (r.model < 0) return Doubt::kNoCandidate;
   if (std::fabs(r.fit.T_model_seen.t.z) > kMostLift_m) return Doubt::kShape;
   if (r.fit.explained < kExplained) return Doubt::kShape;
-  if (r.fit.colored >= kColoured && r.fit.likeness < kLikeness) return Doubt::kPrint;
+  if (r.fit.colored >= kLeastColoured && r.fit.likeness < kLikeness) return Doubt::kPrint;
   return r.fit.score() > r.second_score + kAhead ? Doubt::kNone : Doubt::kRival;
 }
 

@@ -8,27 +8,27 @@ namespace st {
 namespace {
 
 constexpr double kResidualScale_m = 0.006, kHeightSigma_m = 0.004;
-constexpr int kLeastColoured = 60;
 
-// Every `stride`th of some points.
+// Every `stride`th of the points seen.
 struct Subset {
-  std::span<const SurfacePoint> points;
-  std::size_t stride = 1;
-  float tolerance_m = kFitTolerance_m;
-
-  Vec3f middle() const {
-    Vec3f sum{};
-    for (std::size_t i = 0; i < points.size(); i += stride) sum += points[i].p;
-    return sum * (1.0f / static_cast<float>(count()));
+  Subset(const SeenSurface& seen, int every)
+      : points(seen.points), stride(static_cast<std::size_t>(every)), tolerance_m(seen.tolerance_m) {
+    for (std::size_t i = 0; i < points.size(); i += stride) middle += points[i].p;
+    middle = middle * (1.0f / static_cast<float>(count()));
   }
   std::size_t count() const { return (points.size() + stride - 1) / stride; }
+
+  std::span<const SurfacePoint> points;
+  std::size_t stride;
+  float tolerance_m;
+  Vec3f middle{};
 };
 
 // One step in x, y, z and the turn about the points' middle.
 bool improve(const Volume& model, const Subset& seen, const Vec3& start_t, Pose& T) {
   double A[16]{}, b[4]{};
   const PoseF Tf = to_float(T);
-  const Vec3f pivot = Tf * seen.middle();
+  const Vec3f pivot = Tf * seen.middle;
   int used = 0;
   for (std::size_t k = 0; k < seen.points.size(); k += seen.stride) {
     const Vec3f q = Tf * seen.points[k].p;
@@ -171,7 +171,7 @@ VolumeFit measure(const Volume& model, const Subset& seen, const Pose& T_model_s
 
 VolumeFit fit_to_volume(const Volume& model, const SeenSurface& seen, const Pose& start, int iterations,
                         int stride) {
-  const Subset subset{seen.points, static_cast<std::size_t>(stride), seen.tolerance_m};
+  const Subset subset(seen, stride);
   VolumeFit fit;
   fit.T_model_seen = start;
   for (int i = 0; i < iterations; ++i)
@@ -181,9 +181,9 @@ VolumeFit fit_to_volume(const Volume& model, const SeenSurface& seen, const Pose
 
 VolumeFit turn_to_print(const Volume& model, const SeenSurface& seen, const VolumeFit& fit, int steps,
                         double step_rad, int stride) {
-  const Subset subset{seen.points, static_cast<std::size_t>(stride), seen.tolerance_m};
+  const Subset subset(seen, stride);
   VolumeFit best = fit;
-  const Vec3 pivot = fit.T_model_seen * to_double(subset.middle());
+  const Vec3 pivot = fit.T_model_seen * to_double(subset.middle);
   for (int i = -steps; i <= steps; ++i) {
     const Pose turned = moved_about(fit.T_model_seen, {{}, {0, 0, i * step_rad}}, pivot);
     const VolumeFit tried = measure(model, subset, turned);

@@ -30,6 +30,8 @@ struct SampledSurface {
 };
 SampledSurface sample_surface(const Volume& volume, std::span<SurfacePoint> out, std::span<Vec3f> scratch);
 
+inline constexpr int kLeastColoured = 60;  // points with a colour, from which on the print counts
+
 struct VolumeFit {
   Pose T_model_seen;
   float explained = 0;  // share of the points within the tolerance of the model's surface
