@@ -1,7 +1,6 @@
 // startrack calibrate: what this robot's wheels and this camera's delay truly are, from a run.
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "algo/control/dead_reckoning.hpp"
@@ -11,6 +10,7 @@
 #include "hal/create/wheel_log.hpp"
 #include "hal/create/wheels_file.hpp"
 #include "hal/error.hpp"
+#include "hal/results/line_file.hpp"
 #include "hal/results/run_record.hpp"
 #include "tools/report/run_report.hpp"
 #include "tools/startrack/commands.hpp"
@@ -141,11 +141,7 @@ int calibrate(const Arguments& arguments) {
         drive.name.c_str(), 1000 * std::hypot(raw.x, raw.y), raw.yaw * 180 / kPi,
         1000 * std::hypot(now.x, now.y), now.yaw * 180 / kPi);
   }
-  std::ofstream file(arguments.out.path);
-  file << format_wheels_toml(robot);
-  file.close();
-  if (!file)
-    throw Failure(ExitCode::kBadInput, arguments.out.path + ": cannot be written; give another --out");
+  write_whole_file(arguments.out.path, format_wheels_toml(robot));
   std::printf("wheels: %s\n", arguments.out.path.c_str());
   return static_cast<int>(ExitCode::kDone);
 }

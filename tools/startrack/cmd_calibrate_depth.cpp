@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "algo/core/scalar_math.hpp"
 #include "hal/error.hpp"
 #include "hal/recording/camera_file.hpp"
+#include "hal/results/line_file.hpp"
 #include "hal/source/frame_source.hpp"
 #include "hal/system/stop_signal.hpp"
 #include "tools/calibrate/depth_fit.hpp"
@@ -150,11 +150,7 @@ int calibrate(const Arguments& arguments) {
   print_fit(calibration, fit);
   if (!arguments.heights_m.empty()) fit_constant(arguments, fit, calibration);
   if (fit.worth_it()) calibration.correction = fit.correction;
-  std::ofstream file(arguments.out.path);
-  file << format_camera_toml(calibration);
-  file.close();
-  if (!file)
-    throw Failure(ExitCode::kBadInput, arguments.out.path + ": cannot be written; give another --out");
+  write_whole_file(arguments.out.path, format_camera_toml(calibration));
   std::printf("camera: %s\n", arguments.out.path.c_str());
   return static_cast<int>(ExitCode::kDone);
 }

@@ -44,7 +44,7 @@ TEST(CalibrateDepth, ASensorWithoutBowAndAWrongCommandLineAreSaid) {
   LONGS_EQUAL(2, nothing.code);
   const Said nowhere = startrack({"calibrate", "depth", recording, "--out", "/nowhere/camera.toml"});
   LONGS_EQUAL(2, nowhere.code);
-  STRCMP_CONTAINS("cannot be written", nowhere.err.c_str());
+  STRCMP_CONTAINS("/nowhere/camera.toml: cannot write", nowhere.err.c_str());
 }
 
 TEST(CalibrateDepth, WhatStandsThereIsNotOverwritten) {
